@@ -1,5 +1,5 @@
 //! Instructions of what a planner asks of a segment, counted by callgrind: the arms' own proofs
-//! beside those that follow from their inverses alone, and of each machine its own.
+//! beside those that follow from their inverses alone, and of a whole plan.
 #![expect(
     clippy::expect_used,
     clippy::unwrap_used,
@@ -44,10 +44,10 @@ where
     table.expect("it can be planned").spans().collect()
 }
 
-/// Asks for all segments' check, or bound, so many times; how many they are.
+/// Asks for all segments' check, or bound, so many times, or plans a path anew; how many segments
+/// it has.
 fn ask<P: Path<Axes = [f64; N]>, const N: usize>(
-    path: &P,
-    spans: &[Span<[f64; N]>],
+    path: impl Fn() -> P,
     departure: impl Fn(&P, &Span<[f64; N]>) -> f64,
     what: What,
     rounds: u32,
@@ -55,11 +55,18 @@ fn ask<P: Path<Axes = [f64; N]>, const N: usize>(
 where
     P::Error: Debug,
 {
+    let planned = |path: &P| spans(path, |path, span| departure(path, span));
+    let kept = path();
+    let spans = planned(&kept);
     for _ in 0..rounds {
-        for span in spans {
+        if matches!(what, What::Plan) {
+            drop(black_box(planned(&path())));
+            continue;
+        }
+        for span in &spans {
             match what {
-                What::Check => drop(black_box(path.check(black_box(span)))),
-                What::Bound => drop(black_box(departure(path, black_box(span)))),
+                What::Check => drop(black_box(kept.check(black_box(span)))),
+                _ => drop(black_box(departure(&kept, black_box(span)))),
             }
         }
     }
@@ -70,6 +77,8 @@ where
 enum What {
     Check,
     Bound,
+    /// The path made and planned.
+    Plan,
 }
 
 /// By hand, or from the inverse alone.
@@ -80,35 +89,39 @@ enum By {
 }
 
 fn arm(curve: Curve<2>, by: By, what: What, rounds: u32) -> usize {
-    let arm = Arm::new(132.0, 132.0).expect("lengths");
-    let by_hand = arm.path(curve, scara_kin::Elbow::Right).expect("a path");
-    let spans = spans(&by_hand, |path, span| path.departure(span));
+    let curve = black_box(curve);
     match by {
-        By::Hand => ask(&by_hand, &spans, ArmPath::departure, what, rounds),
+        By::Hand => {
+            let arm = Arm::new(132.0, 132.0).expect("lengths");
+            let path = || arm.path(curve, scara_kin::Elbow::Right).expect("a path");
+            ask(path, ArmPath::departure, what, rounds)
+        }
         By::Inverse => {
             let machine = TwoLinks {
                 upper: 132.0,
                 fore: 132.0,
                 base: [0.0; 3],
             };
-            let own = machine.path(curve, Elbow::Right).expect("a path");
-            ask(&own, &spans, MachinePath::departure, what, rounds)
+            let path = || machine.path(curve, Elbow::Right).expect("a path");
+            ask(path, MachinePath::departure, what, rounds)
         }
     }
 }
 
 fn delta(curve: Curve<3>, by: By, what: What, rounds: u32) -> usize {
-    let delta = Delta::new(Dimensions {
-        base: 42.0,
-        platform: 18.0,
-        upper: 120.0,
-        lower: 243.0,
-    })
-    .expect("lengths");
-    let by_hand = delta.path(curve).expect("a path");
-    let spans = spans(&by_hand, |path, span| path.departure(span));
+    let curve = black_box(curve);
     match by {
-        By::Hand => ask(&by_hand, &spans, DeltaPath::departure, what, rounds),
+        By::Hand => {
+            let delta = Delta::new(Dimensions {
+                base: 42.0,
+                platform: 18.0,
+                upper: 120.0,
+                lower: 243.0,
+            })
+            .expect("lengths");
+            let path = || delta.path(curve).expect("a path");
+            ask(path, DeltaPath::departure, what, rounds)
+        }
         By::Inverse => {
             let machine = RotaryDelta {
                 radius: 24.0,
@@ -116,34 +129,44 @@ fn delta(curve: Curve<3>, by: By, what: What, rounds: u32) -> usize {
                 lower: 243.0,
                 zero: 0.0,
             };
-            let own = machine.path(curve, ()).expect("a path");
-            ask(&own, &spans, MachinePath::departure, what, rounds)
+            let path = || machine.path(curve, ()).expect("a path");
+            ask(path, MachinePath::departure, what, rounds)
         }
     }
 }
 
 /// A case: path, by hand or not, check or bound, and the most instructions for a segment.
-const CASES: [(&str, f64); 20] = [
+const CASES: [(&str, f64); 30] = [
+    ("arm, line, plan by hand", 12_000.0),
+    ("arm, line, plan", 120_000.0),
     ("arm, line, check by hand", 140.0),
-    ("arm, line, check", 80_000.0),
+    ("arm, line, check", 7500.0),
     ("arm, line, bound by hand", 4000.0),
-    ("arm, line, bound", 60_000.0),
+    ("arm, line, bound", 31_500.0),
+    ("arm, arc, plan by hand", 48_000.0),
+    ("arm, arc, plan", 120_000.0),
     ("arm, arc, check by hand", 140.0),
-    ("arm, arc, check", 48_000.0),
+    ("arm, arc, check", 7800.0),
     ("arm, arc, bound by hand", 6300.0),
-    ("arm, arc, bound", 68_000.0),
+    ("arm, arc, bound", 32_000.0),
+    ("arm, curve, plan by hand", 21_500.0),
+    ("arm, curve, plan", 375_000.0),
     ("arm, curve, check by hand", 140.0),
-    ("arm, curve, check", 24_000.0),
+    ("arm, curve, check", 13_000.0),
     ("arm, curve, bound by hand", 4600.0),
-    ("arm, curve, bound", 57_000.0),
+    ("arm, curve, bound", 28_500.0),
+    ("Delta, line, plan by hand", 22_500.0),
+    ("Delta, line, plan", 175_000.0),
     ("Delta, line, check by hand", 160.0),
-    ("Delta, line, check", 47_000.0),
+    ("Delta, line, check", 11_800.0),
     ("Delta, line, bound by hand", 8500.0),
-    ("Delta, line, bound", 120_000.0),
+    ("Delta, line, bound", 56_000.0),
+    ("Delta, arc, plan by hand", 93_000.0),
+    ("Delta, arc, plan", 255_000.0),
     ("Delta, arc, check by hand", 160.0),
-    ("Delta, arc, check", 260_000.0),
+    ("Delta, arc, check", 12_800.0),
     ("Delta, arc, bound by hand", 21_000.0),
-    ("Delta, arc, bound", 125_000.0),
+    ("Delta, arc, bound", 59_000.0),
 ];
 
 /// Runs a case; the number of its segments.
@@ -153,10 +176,10 @@ fn run(case: &str, rounds: u32) -> usize {
     } else {
         By::Inverse
     };
-    let what = if case.contains("check") {
-        What::Check
-    } else {
-        What::Bound
+    let what = match case {
+        _ if case.contains("check") => What::Check,
+        _ if case.contains("bound") => What::Bound,
+        _ => What::Plan,
     };
     let flat = match case {
         _ if case.starts_with("arm, line") => Curve::line([-80.0, 100.0], [80.0, 100.0]),

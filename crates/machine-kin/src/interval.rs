@@ -17,6 +17,7 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use trig_kernels::{atan2, sin_cos, sqrt};
 
+use crate::matrix::Bounded;
 use crate::number::{Number, Refusal, operators};
 
 /// The numbers between two ends. Where nothing is known of a number any more, after a division by
@@ -315,6 +316,13 @@ fn sines_between(angle: Interval) -> (Interval, Interval) {
         Interval::new(low, high)
     };
     (hull(from.0, to.0, FRAC_PI_2), hull(from.1, to.1, 0.0))
+}
+
+impl Bounded for Interval {
+    #[inline]
+    fn most(&self) -> f64 {
+        self.magnitude()
+    }
 }
 
 impl Number for Interval {

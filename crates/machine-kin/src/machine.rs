@@ -6,7 +6,7 @@ use core::ops::RangeInclusive;
 
 use path_timing::Curve;
 
-use crate::matrix::{Enclosure, Intervals, both};
+use crate::matrix::{Enclosure, both};
 use crate::path::{MachinePath, PathError};
 use crate::{Gradient, Interval, Number, Refusal};
 
@@ -232,7 +232,7 @@ fn slopes_within<M: Machine<N>, const N: usize>(
     tool: [f64; N],
     by: f64,
     branch: M::Branch,
-) -> Result<Intervals<N>, Refusal> {
+) -> Result<[[Interval; N]; N], Refusal> {
     let here = Gradient::variables(tool.map(Interval::from));
     let around = Gradient::variables(tool.map(|x| Interval::around(x, by)));
     let here = machine.inverse(here, branch)?.map(|axis| *axis.slopes());

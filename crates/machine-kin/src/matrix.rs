@@ -1,6 +1,6 @@
 //! Small square matrices: inverses, and how an interval matrix is enclosed by one.
 
-use crate::{Interval, Number};
+use crate::Number;
 
 pub(crate) type Matrix<const N: usize> = [[f64; N]; N];
 
@@ -59,8 +59,11 @@ pub(crate) fn largest<const N: usize>(v: &[f64; N]) -> f64 {
     v.iter().fold(0.0, |most, x| larger_or_nan(most, *x))
 }
 
-/// Intervals in rows.
-pub(crate) type Intervals<const N: usize> = [[Interval; N]; N];
+/// A number of which the most that it can be is known.
+pub(crate) trait Bounded: Number {
+    /// The largest distance from 0.
+    fn most(&self) -> f64;
+}
 
 /// All matrices that the slopes of the axes by the tool's coordinates can be on a piece of a path.
 ///
@@ -71,7 +74,7 @@ pub(crate) type Intervals<const N: usize> = [[Interval; N]; N];
 /// ```
 ///
 /// so that max |e| ≤ max b / (1 - max r) where max r < 1: there every such J has an inverse.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Enclosure<const N: usize> {
     /// |Y|
     inverse: Matrix<N>,
@@ -81,22 +84,22 @@ pub(crate) struct Enclosure<const N: usize> {
 
 impl<const N: usize> Enclosure<N> {
     /// None where some of them may be singular.
-    pub(crate) fn new(slopes: &Intervals<N>) -> Option<Self> {
+    pub(crate) fn new<T: Bounded>(slopes: &[[T; N]; N]) -> Option<Self> {
         let y = inverse(slopes.map(|row| row.map(Number::middle)))?;
         Self::by(&y, slopes)
     }
 
     /// The same by an inverse of one of them, or about one.
-    pub(crate) fn by(y: &Matrix<N>, slopes: &Intervals<N>) -> Option<Self> {
+    pub(crate) fn by<T: Bounded>(y: &Matrix<N>, slopes: &[[T; N]; N]) -> Option<Self> {
         let mut rest = [0.0; N];
         for (number, (y, rest)) in y.iter().zip(&mut rest).enumerate() {
             for column in 0..N {
-                let mut product = Interval::from(if number == column { -1.0 } else { 0.0 });
+                let mut product = T::from(if number == column { -1.0 } else { 0.0 });
                 for (factor, row) in y.iter().zip(slopes) {
-                    let slope = row.get(column).copied().unwrap_or(Interval::UNKNOWN);
-                    product = product + slope * *factor;
+                    let slope = row.get(column).copied();
+                    product = product + slope.unwrap_or_else(|| T::from(f64::NAN)) * *factor;
                 }
-                *rest += product.magnitude();
+                *rest += product.most();
             }
         }
         // Written so that NaN is singular.
@@ -105,6 +108,34 @@ impl<const N: usize> Enclosure<N> {
             inverse: y.map(|row| row.map(f64::abs)),
             rest: rest.map(up),
         })
+    }
+
+    /// Of no matrix.
+    pub(crate) const NONE: Self = Self {
+        inverse: [[0.0; N]; N],
+        rest: [0.0; N],
+    };
+
+    /// |Y|
+    pub(crate) const fn inverse(&self) -> &Matrix<N> {
+        &self.inverse
+    }
+
+    /// How many times these sums the rows of others may differ by for the spread to be `most`.
+    pub(crate) fn room(&self, rows: &[f64; N], most: f64) -> f64 {
+        (most - self.spread()) / largest(&product(&self.inverse, rows))
+    }
+
+    /// With others beside them, the rows of which differ by no more than these sums.
+    pub(crate) fn with_others(&self, rows: &[f64; N]) -> Option<Self> {
+        let mut rest = self.rest;
+        for (rest, apart) in rest.iter_mut().zip(product(&self.inverse, rows)) {
+            *rest = up(*rest + apart);
+        }
+        // Written so that NaN is singular.
+        let is_regular = largest(&rest) < 1.0;
+        let inverse = self.inverse;
+        is_regular.then_some(Self { inverse, rest })
     }
 
     /// What is true of those of both.
@@ -136,7 +167,8 @@ impl<const N: usize> Enclosure<N> {
         self.off(&axes)
     }
 
-    fn bounded(&self, b: [f64; N]) -> [f64; N] {
+    /// From b.
+    pub(crate) fn bounded(&self, b: [f64; N]) -> [f64; N] {
         let most = largest(&b) / (1.0 - self.spread());
         let mut off = b;
         for (off, rest) in off.iter_mut().zip(self.rest) {

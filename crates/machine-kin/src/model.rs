@@ -18,6 +18,7 @@
 use trig_kernels::{atan2, sin_cos, sqrt};
 
 use crate::interval::{LEAST, LOST};
+use crate::matrix::Bounded;
 use crate::number::{Number, Refusal, operators};
 use crate::{Interval, Jet};
 
@@ -67,12 +68,6 @@ impl<const K: usize> Model<K> {
     fn change(&self) -> f64 {
         let rest = self.coefficients.iter().skip(1).map(|c| c.abs());
         (rest.sum::<f64>() + self.rest) * LOST
-    }
-
-    /// The largest distance from 0.
-    #[inline]
-    fn magnitude(&self) -> f64 {
-        (self.size() + self.rest) * LOST
     }
 
     /// From a polynomial and a rest as computed, with what both are rounded by where the numbers
@@ -146,17 +141,24 @@ impl<const K: usize> Model<K> {
     #[inline]
     fn times(self, other: Self) -> Self {
         let mut coefficients = [0.0; K];
-        // Beyond the last power.
-        let mut beyond = 0.0;
         for (i, a) in self.coefficients.iter().enumerate() {
             for (j, b) in other.coefficients.iter().enumerate() {
-                match coefficients.get_mut(i.saturating_add(j)) {
-                    Some(coefficient) => *coefficient += a * b,
-                    None => beyond += (a * b).abs(),
+                if let Some(coefficient) = coefficients.get_mut(i.saturating_add(j)) {
+                    *coefficient += a * b;
                 }
             }
         }
-        let (a, b) = (self.size(), other.size());
+        // Of the last coefficients of the other, so many: Σ |bⱼ|.
+        let (mut beyond, mut last) = (0.0, 0.0);
+        let pairs = self
+            .coefficients
+            .iter()
+            .zip(other.coefficients.iter().rev());
+        for (a, last_b) in pairs {
+            beyond += a.abs() * last;
+            last += last_b.abs();
+        }
+        let (a, b) = (self.size(), last);
         let rest = beyond + a * other.rest + self.rest * (b + other.rest);
         Self::rounded(coefficients, rest, a * b)
     }
@@ -172,12 +174,12 @@ impl<const K: usize> Model<K> {
         let jets = Jet::new(self.coefficients) / Jet::new(other.coefficients);
         let found = Self::new(*jets.coefficients(), 0.0);
         let left = self - found * other;
-        found.with_rest(left.magnitude() / least)
+        found.with_rest(left.most() / least)
     }
 
     /// Off by more.
     #[inline]
-    fn farther(self, by: f64) -> Self {
+    pub(crate) fn farther(self, by: f64) -> Self {
         Self {
             rest: (self.rest + by + LEAST) * LOST,
             ..self
@@ -221,6 +223,13 @@ impl<const K: usize> From<f64> for Model<K> {
 
 operators!([const K: usize] Model<K>);
 
+impl<const K: usize> Bounded for Model<K> {
+    #[inline]
+    fn most(&self) -> f64 {
+        (self.size() + self.rest) * LOST
+    }
+}
+
 impl<const K: usize> Number for Model<K> {
     #[inline]
     fn squared(self) -> Self {
@@ -241,7 +250,7 @@ impl<const K: usize> Number for Model<K> {
         }
         let found = Jet::new(self.coefficients).root(reason)?;
         let found = Self::new(*found.coefficients(), 0.0);
-        let left = (self - found * found).magnitude();
+        let left = (self - found * found).most();
         // That of the polynomial may be below 0, the root itself is not.
         let least = sqrt(least) * (1.0 - LOOSE) + (found.first() - found.change()).max(0.0);
         Ok(found.with_rest(left / least))
@@ -250,7 +259,7 @@ impl<const K: usize> Number for Model<K> {
     fn sin_cos(self) -> (Self, Self) {
         let middle = self.first();
         let turned = self - middle;
-        let most = turned.magnitude();
+        let most = turned.most();
         // Written so that NaN is any angle.
         let is_short = most <= SHORT;
         if !is_short {
@@ -276,7 +285,7 @@ impl<const K: usize> Number for Model<K> {
         let (y0, x0) = (y.first(), x.first());
         let (along, across) = (x * x0 + y * y0, y * x0 - x * y0);
         let tangent = across / along;
-        let most = tangent.magnitude();
+        let most = tangent.most();
         let is_ahead = along.first() > along.change();
         // Written so that NaN is undecided.
         if !(is_ahead && most <= SHORT) {
@@ -308,6 +317,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::Model;
+    use crate::matrix::Bounded;
     use crate::{Number, Refusal};
 
     const BITS: usize = 256;
@@ -318,14 +328,14 @@ mod tests {
     }
 
     /// The polynomial, exactly.
-    fn at(coefficients: &[f64; 4], t: f64) -> BigFloat {
+    fn at(coefficients: &[f64], t: f64) -> BigFloat {
         let coefficients = coefficients.iter().rev();
         coefficients.fold(exact(0.0), |sum, c| {
             sum.mul(&exact(t), BITS, TO).add(&exact(*c), BITS, TO)
         })
     }
 
-    fn holds(model: &Model<4>, t: f64, value: &BigFloat) -> bool {
+    fn holds<const K: usize>(model: &Model<K>, t: f64, value: &BigFloat) -> bool {
         let apart = at(&model.coefficients, t).sub(value, BITS, TO).abs();
         model.rest.is_nan() || apart <= exact(model.rest)
     }
@@ -337,44 +347,64 @@ mod tests {
         )
     }
 
+    /// All functions, beside exact arithmetic of all that the models can be.
+    fn all_hold<const K: usize>(
+        [a, b]: [[f64; K]; 2],
+        off: f64,
+        by: f64,
+        t: f64,
+    ) -> Result<(), TestCaseError> {
+        let (x, y) = (Model::new(a, off), Model::new(b, 0.0));
+        let consts = Consts::new().map_err(|_| TestCaseError::fail("no constants"));
+        let mut consts = consts?;
+        for side in [-1.0, 0.0, 1.0] {
+            let u = at(&a, t).add(&exact(off * side), BITS, TO);
+            let v = at(&b, t);
+            prop_assert!(holds(&(x + y), t, &u.add(&v, BITS, TO)));
+            prop_assert!(holds(&(x - y), t, &u.sub(&v, BITS, TO)));
+            prop_assert!(holds(&(x * y), t, &u.mul(&v, BITS, TO)));
+            prop_assert!(holds(&(x / y), t, &u.div(&v, BITS, TO)));
+            prop_assert!(holds(&(x + by), t, &u.add(&exact(by), BITS, TO)));
+            prop_assert!(holds(&(x * by), t, &u.mul(&exact(by), BITS, TO)));
+            prop_assert!(holds(&(x / by), t, &u.div(&exact(by), BITS, TO)));
+            if let Ok(root) = x.root("") {
+                prop_assert!(holds(&root, t, &u.sqrt(BITS, TO)));
+            }
+            let (sin, cos) = x.sin_cos();
+            prop_assert!(holds(&sin, t, &u.sin(BITS, TO, &mut consts)));
+            prop_assert!(holds(&cos, t, &u.cos(BITS, TO, &mut consts)));
+            if let Ok(angle) = Model::atan2(x, y, "") {
+                // The angle of (u, v) is that of the middle and an arc tangent.
+                let turned = (angle - angle.middle()).most();
+                prop_assume!(turned < 1.0);
+                let found = at(&angle.coefficients, t);
+                let (sin, cos) = (
+                    found.sin(BITS, TO, &mut consts),
+                    found.cos(BITS, TO, &mut consts),
+                );
+                let across = u.mul(&cos, BITS, TO).sub(&v.mul(&sin, BITS, TO), BITS, TO);
+                let along = v.mul(&cos, BITS, TO).add(&u.mul(&sin, BITS, TO), BITS, TO);
+                let apart = across
+                    .div(&along, BITS, TO)
+                    .atan(BITS, TO, &mut consts)
+                    .abs();
+                prop_assert!(apart <= exact(angle.rest), "{apart} {angle:?}");
+            }
+        }
+        Ok(())
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// All functions, beside exact arithmetic of all that the models can be.
         #[test]
         fn models_hold_the_exact_values(
             a in any_model(), b in any_model(), off in 0.0..1e-3_f64, by in -3.0..3.0_f64, t in -1.0..=1.0_f64,
         ) {
-            let (x, y) = (Model::new(a, off), Model::new(b, 0.0));
-            let mut consts = Consts::new().unwrap();
-            for side in [-1.0, 0.0, 1.0] {
-                let u = at(&a, t).add(&exact(off * side), BITS, TO);
-                let v = at(&b, t);
-                prop_assert!(holds(&(x + y), t, &u.add(&v, BITS, TO)));
-                prop_assert!(holds(&(x - y), t, &u.sub(&v, BITS, TO)));
-                prop_assert!(holds(&(x * y), t, &u.mul(&v, BITS, TO)));
-                prop_assert!(holds(&(x / y), t, &u.div(&v, BITS, TO)));
-                prop_assert!(holds(&(x + by), t, &u.add(&exact(by), BITS, TO)));
-                prop_assert!(holds(&(x * by), t, &u.mul(&exact(by), BITS, TO)));
-                prop_assert!(holds(&(x / by), t, &u.div(&exact(by), BITS, TO)));
-                if let Ok(root) = x.root("") {
-                    prop_assert!(holds(&root, t, &u.sqrt(BITS, TO)));
-                }
-                let (sin, cos) = x.sin_cos();
-                prop_assert!(holds(&sin, t, &u.sin(BITS, TO, &mut consts)));
-                prop_assert!(holds(&cos, t, &u.cos(BITS, TO, &mut consts)));
-                if let Ok(angle) = Model::atan2(x, y, "") {
-                    // The angle of (u, v) is that of the middle and an arc tangent.
-                    let turned = (angle - angle.middle()).range().magnitude();
-                    prop_assume!(turned < 1.0);
-                    let found = at(&angle.coefficients, t);
-                    let (sin, cos) = (found.sin(BITS, TO, &mut consts), found.cos(BITS, TO, &mut consts));
-                    let across = u.mul(&cos, BITS, TO).sub(&v.mul(&sin, BITS, TO), BITS, TO);
-                    let along = v.mul(&cos, BITS, TO).add(&u.mul(&sin, BITS, TO), BITS, TO);
-                    let apart = across.div(&along, BITS, TO).atan(BITS, TO, &mut consts).abs();
-                    prop_assert!(apart <= exact(angle.rest), "{apart} {angle:?}");
-                }
-            }
+            all_hold([a, b], off, by, t)?;
+            // Of more coefficients the last are those of products alone.
+            let longer = |[a, b, c, d]: [f64; 4]| [a, b, c, d, 0.0, 0.0, 0.0, 0.0];
+            all_hold([a, b].map(longer), off, by, t)?;
         }
     }
 

@@ -1,11 +1,14 @@
 //! Curves of the tool as paths of a machine's axes, to be timed by `path-timing`.
 
 mod around;
+mod beside;
 mod bound;
+mod check;
+mod corridor;
 mod error;
 mod nodes;
+mod series;
 mod stretch;
-mod tube;
 mod turns;
 mod walk;
 
@@ -15,6 +18,7 @@ pub use error::PathError;
 
 use crate::matrix::Matrix;
 use crate::{Axis, Gradient, Jet, Machine, Refusal};
+use corridor::Beside;
 use turns::{Turns, at_turns};
 
 /// A curve of the tool as a path of a machine's axes, by the curve's arc length: what
@@ -31,6 +35,8 @@ pub struct MachinePath<M: Machine<N>, const N: usize> {
     turns: Turns<N>,
     /// What places of the curve are off by.
     rounding: f64,
+    /// What is known beside all of it.
+    beside: Option<Beside<N>>,
 }
 
 impl<M: Machine<N>, const N: usize> MachinePath<M, N> {

@@ -10,7 +10,7 @@ use core::convert::Infallible;
 use core::f64::consts::TAU;
 
 pub use error::CurveError;
-pub use motion::{CurveMotion, TurnMotion};
+pub use motion::{CurveMotion, MotionSeries, TurnMotion};
 pub use smoothed::{Smoothed, Vertex, Waypoint};
 
 use crate::{Corner, Cubic, Path, PathPoint, Span, ToolLimits};
@@ -389,6 +389,14 @@ impl<const D: usize> Curve<D> {
             Shape::Line { .. } => [1.0, 0.0, 0.0, 0.0],
             Shape::Arc { radius, .. } => [*radius; 4],
             Shape::Cubic(_) | Shape::Polynomial(_) => polynomial::longest(jet, half),
+        }
+    }
+
+    /// The longest that the sixth derivative is.
+    const fn longest_sixth(&self) -> f64 {
+        match &self.shape {
+            Shape::Arc { radius, .. } => *radius,
+            Shape::Line { .. } | Shape::Cubic(_) | Shape::Polynomial(_) => 0.0,
         }
     }
 

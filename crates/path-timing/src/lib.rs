@@ -42,7 +42,8 @@ mod verify;
 pub use axes::{Axes, AxisLimits, ToolLimits};
 pub use cubic::Cubic;
 pub use curve::{
-    Curve, CurveError, CurveMotion, CurvePoint, Smoothed, TurnMotion, Vertex, Waypoint,
+    Curve, CurveError, CurveMotion, CurvePoint, MotionSeries, Smoothed, TurnMotion, Vertex,
+    Waypoint,
 };
 pub use departure::segments_within;
 pub use error::PlanError;

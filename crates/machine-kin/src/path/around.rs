@@ -2,10 +2,13 @@
 
 use super::MachinePath;
 use super::nodes::NODE;
-use super::stretch::{K, Stretch};
-use crate::matrix::{Intervals, Matrix, both, larger_or_nan, product};
+use super::stretch::Stretch;
+use crate::matrix::{Matrix, both, larger_or_nan, product};
 use crate::model::Model;
 use crate::{Gradient, Machine, Refusal};
+
+/// Coefficients of the Jacobian's Taylor models.
+const K: usize = 4;
 
 /// What is known of a machine within a radius of a piece of its path.
 pub(super) struct Around<const N: usize> {
@@ -17,7 +20,10 @@ pub(super) struct Around<const N: usize> {
 
 impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// The axes along a piece.
-    pub(super) fn axes(&self, stretch: &Stretch<N>) -> Result<[Model<K>; N], Refusal> {
+    pub(super) fn axes<const K: usize>(
+        &self,
+        stretch: &Stretch<N>,
+    ) -> Result<[Model<K>; N], Refusal> {
         let tool = stretch.models(&[0.0; N]);
         self.machine.inverse(tool, self.branch)
     }
@@ -39,9 +45,9 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
 }
 
 impl<const N: usize> Around<N> {
-    /// All Jacobians.
-    pub(super) fn slopes(&self) -> Intervals<N> {
-        self.jacobian.map(|row| row.map(|slope| slope.range()))
+    /// The Jacobian along the piece, its time from -1 to 1.
+    pub(super) const fn jacobian(&self) -> &[[Model<K>; N]; N] {
+        &self.jacobian
     }
 
     /// A Jacobian at a time from the middle of the piece, in segments.

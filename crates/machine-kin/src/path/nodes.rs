@@ -25,15 +25,13 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         cubics: &[Cubic; N],
     ) -> Option<Nodes<N>> {
         let mut nodes = Nodes {
-            places: [[0.0; N]; NODES],
             errors: [[0.0; N]; NODES],
             largest: [0.0; N],
             rounding: [0.0; N],
         };
-        let places = nodes.places.iter_mut().zip(&mut nodes.errors);
-        for (tau, (place, errors)) in CurveMotion::<N>::NODES.into_iter().zip(places) {
-            *place = motion.at(tau);
-            let axes = place.map(Interval::from);
+        let places = CurveMotion::<N>::NODES.into_iter().zip(&mut nodes.errors);
+        for (tau, errors) in places {
+            let axes = motion.at(tau).map(Interval::from);
             let axes = self.machine.inverse(axes, self.branch).ok()?;
             let positions = cubics.map(|cubic| cubic.position(tau));
             *errors = self.apart(&positions, &axes.map(Number::middle));
@@ -59,8 +57,6 @@ pub(super) fn raise<const N: usize>(most: &mut [f64; N], values: &[f64; N]) {
 
 /// What is known of the axes at the nodes.
 pub(super) struct Nodes<const N: usize> {
-    /// The places of the curve.
-    places: [[f64; N]; NODES],
     /// What each axis is off by there.
     errors: [[f64; N]; NODES],
     /// The most of that.
@@ -99,15 +95,6 @@ impl<const N: usize> Nodes<N> {
     /// What that is rounded by at most.
     pub(super) const fn rounding(&self) -> &[f64; N] {
         &self.rounding
-    }
-
-    /// The places of the curve, each off by so much.
-    pub(super) fn places_off(&self, off: &[[f64; N]; NODES]) -> [[f64; N]; NODES] {
-        let mut places = self.places;
-        for (place, off) in places.iter_mut().flatten().zip(off.iter().flatten()) {
-            *place += off;
-        }
-        places
     }
 
     /// From the largest fourth derivatives.

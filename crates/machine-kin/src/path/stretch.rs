@@ -2,6 +2,7 @@
 
 use path_timing::CurveMotion;
 
+use crate::matrix::Bounded;
 use crate::model::Model;
 use crate::{Interval, Jet};
 
@@ -16,9 +17,6 @@ pub(super) struct Stretch<const N: usize> {
     /// Rounding of a position, in the unit of length.
     rounding: f64,
 }
-
-/// Coefficients of the Taylor models.
-pub(super) const K: usize = 4;
 
 /// One over k!
 const FACTORIALS: [f64; 5] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0];
@@ -66,11 +64,6 @@ impl<const N: usize> Stretch<N> {
         transposed(&self.middle).map(jet)
     }
 
-    /// The same in the middle.
-    pub(super) fn middle_jets<const K: usize>(&self) -> [Jet<Interval, K>; N] {
-        transposed(&self.middle).map(|values| self.coefficients(values.map(|value| (value, 0.0))))
-    }
-
     /// From derivatives in the middle and what they change by, with what they are rounded by.
     fn coefficients<const K: usize>(&self, derivatives: [(f64, f64); 5]) -> Jet<Interval, K> {
         let mut coefficients = [Interval::UNKNOWN; K];
@@ -83,24 +76,61 @@ impl<const N: usize> Stretch<N> {
     }
 
     /// Every place within a radius of the part, along its time from -1 to 1.
-    pub(super) fn models(&self, radius: &[f64; N]) -> [Model<K>; N] {
+    pub(super) fn models<const K: usize>(&self, radius: &[f64; N]) -> [Model<K>; N] {
         let [.., l5] = self.longest;
         let (t, t2) = (self.half, self.half * self.half / 2.0);
         let (t3, t4) = (t2 * t / 3.0, t2 * t2 / 6.0);
-        let [_, l1, l2, l3, _] = self.roundings();
-        let rounding = self.rounding + l1 * t + l2 * t2 + l3 * t3;
+        let powers = [1.0, t, t2, t3, t4];
+        let rounding = (self.roundings().into_iter().zip(powers)).map(|(by, power)| by * power);
+        let rounding = rounding.sum::<f64>() + l5 * t4 * t / 5.0;
         let mut models = [Model::from(0.0); N];
         let known = transposed(&self.middle).into_iter().zip(radius);
-        for (model, ([p, p1, p2, p3, p4], by)) in models.iter_mut().zip(known) {
-            let rest = (p4.abs() + l5 * t) * t4 + by + rounding;
-            *model = Model::new([p, p1 * t, p2 * t2, p3 * t3], rest * (1.0 + ROUNDING));
+        for (model, (derivatives, by)) in models.iter_mut().zip(known) {
+            let mut coefficients = [0.0; K];
+            let mut rest = by + rounding;
+            for (number, (derivative, power)) in derivatives.iter().zip(powers).enumerate() {
+                match coefficients.get_mut(number) {
+                    Some(coefficient) => *coefficient = derivative * power,
+                    None => rest += (derivative * power).abs(),
+                }
+            }
+            *model = Model::new(coefficients, rest * (1.0 + ROUNDING));
         }
         models
     }
 
+    /// Every place of a whole segment, along its time from -1 to 1, as a series of a series: known
+    /// better than by [`models`](Self::models) where the point is accelerated.
+    pub(super) fn series<const K: usize>(&self, motion: &CurveMotion<'_, N>) -> [Model<K>; N] {
+        let series = motion.series(0.5);
+        let mut parameter = [0.0; K];
+        let mut power = 1.0;
+        for (place, coefficient) in parameter.iter_mut().skip(1).zip(series.parameter) {
+            power *= 0.5;
+            *place = coefficient * power;
+        }
+        let parameter = Model::new(parameter, 0.0);
+        let most = parameter.most();
+        let cube = most * most * most;
+        // The place, its derivatives, and the parameter are rounded.
+        let rest = 4.0 * self.rounding + series.longest_sixth * (cube * cube) / 720.0;
+        let mut places = [Model::from(0.0); N];
+        for (place, [.., fifth]) in places.iter_mut().zip(transposed(&series.derivatives)) {
+            *place = Model::from(fifth / 120.0);
+        }
+        let factors = [1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0, 1.0];
+        let lower = series.derivatives.iter().rev().skip(1);
+        for (derivatives, factor) in lower.zip(factors) {
+            for (place, derivative) in places.iter_mut().zip(derivatives) {
+                *place = *place * parameter + derivative * factor;
+            }
+        }
+        places.map(|place| place.farther(rest))
+    }
+
     /// Every place of the part.
     pub(super) fn places(&self) -> [Interval; N] {
-        self.models(&[0.0; N]).map(|model| model.range())
+        self.models::<2>(&[0.0; N]).map(|model| model.range())
     }
 
     /// What the place and each derivative are rounded by.

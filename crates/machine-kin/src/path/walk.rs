@@ -2,6 +2,7 @@
 
 use path_timing::{Curve, CurveMotion};
 
+use super::corridor::Beside;
 use super::stretch::{ROUNDING, Stretch};
 use super::turns::{MAX_TURN, Turns, at_turns};
 use super::{MachinePath, PathError};
@@ -10,6 +11,12 @@ use crate::{Axis, Interval, Machine, Number};
 
 /// Shortest piece of a curve, as a fraction of it: what is undecided then is refused.
 const MIN_PIECE: f64 = 1e-9;
+
+/// Longest piece, as a part of the path's size.
+const MAX_PIECE: f64 = 1.0 / 16.0;
+
+/// Pieces that are longer are halved where it is not known what is beside them, as well.
+const WELL: f64 = 1.0 / 256.0;
 
 /// Nearest to the end of the branch and to singular poses that a path may come, in each coordinate,
 /// as a fraction of its size.
@@ -35,10 +42,12 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
             branch,
             turns: Turns::new(previous),
             rounding: size * ROUNDING,
+            beside: None,
         };
-        let survey = Survey {
-            edge: [size * EDGE; N],
+        let mut survey = Survey {
+            size,
             least: curve.length() * MIN_PIECE,
+            beside: Some(Beside::NONE),
         };
         let start = survey.positions(&path, 0.0, &previous)?;
         path.turns = Turns::new(start);
@@ -49,6 +58,7 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
                 return Err(PathError::Turns { s });
             }
         }
+        path.beside = survey.beside;
         Ok(path)
     }
 }
@@ -69,9 +79,12 @@ fn check_ranges<const N: usize>(axes: &[Axis; N]) -> Result<(), PathError<N>> {
 
 /// Walks along a curve before it is a path.
 struct Survey<const N: usize> {
-    edge: [f64; N],
+    /// Of the path.
+    size: f64,
     /// Shortest piece.
     least: f64,
+    /// What is known beside the path so far.
+    beside: Option<Beside<N>>,
 }
 
 impl<const N: usize> Survey<N> {
@@ -91,19 +104,24 @@ impl<const N: usize> Survey<N> {
     /// The next place of the survey, the positions there, and the length of the piece to try next.
     /// Shorter pieces lead up to the first place that is refused.
     fn advance<M: Machine<N>>(
-        &self,
+        &mut self,
         path: &MachinePath<M, N>,
         s: f64,
         positions: &[f64; N],
         mut step: f64,
     ) -> Result<(f64, [f64; N], f64), PathError<N>> {
+        step = step.min(self.size * MAX_PIECE);
         loop {
             let next = (s + step).min(path.curve.length());
-            let there = self
-                .piece(path, [s, next], positions)
-                .and_then(|()| self.positions(path, next, positions));
+            let there = self.piece(path, [s, next], positions).and_then(|beside| {
+                let positions = self.positions(path, next, positions)?;
+                Ok((beside, positions))
+            });
             match there {
-                Ok(there) => return Ok((next, there, step * 2.0)),
+                Ok((beside, there)) => {
+                    self.beside = beside;
+                    return Ok((next, there, step * 2.0));
+                }
                 Err(error) if step <= self.least => return Err(self.named(path, error)),
                 Err(_) => step *= 0.5,
             }
@@ -116,8 +134,9 @@ impl<const N: usize> Survey<N> {
             return error;
         };
         let mut around = point.map(Interval::from);
-        for (place, edge) in around.iter_mut().zip(self.edge) {
-            *place = *place + Interval::new(-edge, edge) * NEXT;
+        let beside = Interval::around(0.0, self.size * EDGE * NEXT);
+        for place in &mut around {
+            *place = *place + beside;
         }
         let axes = path.machine.inverse(around, path.branch);
         axes.map_or_else(
@@ -126,16 +145,16 @@ impl<const N: usize> Survey<N> {
         )
     }
 
-    /// Whether nothing of a piece is out of reach, singular, or beyond a range.
+    /// What is known beside the path with another piece of it, of which nothing is out of reach,
+    /// singular, or beyond a range.
     fn piece<M: Machine<N>>(
         &self,
         path: &MachinePath<M, N>,
         s: [f64; 2],
         near: &[f64; N],
-    ) -> Result<(), PathError<N>> {
+    ) -> Result<Option<Beside<N>>, PathError<N>> {
         let [from, to] = s;
-        let ends = s.map(|s| path.curve.at(s).tangent.map(|slope| slope * (to - from)));
-        let motion = CurveMotion::new(&path.curve, s, ends.each_ref(), 1.0);
+        let motion = CurveMotion::evenly(&path.curve, s);
         let stretch = Stretch::new(&motion, [0.0, 1.0], path.rounding);
         if let Some(beyond) = path.beyond_area(&stretch.places(), &[0.0; N], s) {
             return Err(beyond);
@@ -146,11 +165,21 @@ impl<const N: usize> Survey<N> {
             point,
             reason,
         };
-        let around = path.around(&stretch, &self.edge).map_err(refused)?;
-        if Enclosure::new(&around.slopes()).is_none() {
-            return Err(PathError::Singular { s: from, point });
+        let beside = self.beside.and_then(|before| {
+            let next = path.beside(&stretch, self.size)?;
+            Some(before.and(&next))
+        });
+        let edge = self.size * EDGE;
+        if beside.is_none_or(|beside| beside.corridor.radius < edge) {
+            let around = path.around(&stretch, &[edge; N]).map_err(refused)?;
+            let is_regular = Enclosure::new(around.jacobian()).is_some();
+            // Of shorter pieces more is known.
+            let is_long = self.beside.is_some() && to - from > self.size * WELL;
+            if !is_regular || is_long {
+                return Err(PathError::Singular { s: from, point });
+            }
         }
-        let positions = path.axes(&stretch).map_err(refused)?;
+        let positions = path.axes::<4>(&stretch).map_err(refused)?;
         let axes = path.axes.iter().zip(near);
         for (position, (axis, near)) in positions.into_iter().zip(axes) {
             let position = position.range();
@@ -170,6 +199,6 @@ impl<const N: usize> Survey<N> {
                 });
             }
         }
-        Ok(())
+        Ok(beside)
     }
 }

@@ -179,22 +179,47 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
         };
         let ([from, to], [before, after]) = (s, velocities);
         let ([q0, v0], [q1, v1]) = (end(from, before), end(to, after));
-        let cubic = Cubic {
-            q0,
-            q1,
-            v0,
-            v1,
-            duration_s,
-        };
-        let parameter = Parameter::new(&cubic);
+        Self::of_parameter(
+            curve,
+            &Cubic {
+                q0,
+                q1,
+                v0,
+                v1,
+                duration_s,
+            },
+        )
+    }
+
+    /// From the arc length `s[0]` to `s[1]` of the curve, evenly in the curve's own parameter.
+    #[must_use]
+    pub fn evenly(curve: &'a Curve<D>, s: [f64; 2]) -> Self {
+        let [q0, q1] = s.map(|s| {
+            let [u, ..] = curve.parameter(s);
+            u
+        });
+        Self::of_parameter(
+            curve,
+            &Cubic {
+                q0,
+                q1,
+                v0: q1 - q0,
+                v1: q1 - q0,
+                duration_s: 1.0,
+            },
+        )
+    }
+
+    fn of_parameter(curve: &'a Curve<D>, cubic: &Cubic) -> Self {
+        let parameter = Parameter::new(cubic);
         let jet = curve.jet(parameter.at(0.5));
         let [fastest, ..] = parameter.largest;
         let half = fastest * 0.5;
         let longest = curve.longest(&jet, half);
         let ([_, first, ..], [_, second, ..]) = (&jet, longest);
         let slowest = norm(first) - half * second;
-        let (turn, curvature, distance) = if slowest > 0.0 && Parameter::comes_forward(&cubic) {
-            let distance = (q1 - q0) * slowest;
+        let (turn, curvature, distance) = if slowest > 0.0 && Parameter::comes_forward(cubic) {
+            let distance = (cubic.q1 - cubic.q0) * slowest;
             let turn = fastest * NODE * second / slowest;
             (turn, second / (slowest * slowest), distance)
         } else {
@@ -259,6 +284,18 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
         self.fifth
     }
 
+    /// The place near τ as a power series of a power series.
+    #[must_use]
+    pub fn series(&self, tau: f64) -> MotionSeries<D> {
+        let [_, _, c2, c3] = self.parameter.coefficients;
+        let [first, _] = self.parameter.derivatives(tau);
+        MotionSeries {
+            derivatives: self.curve.jet(self.parameter.at(tau)),
+            parameter: [first, c2 + 3.0 * c3 * tau, c3],
+            longest_sixth: self.curve.longest_sixth(),
+        }
+    }
+
     /// The most by which a tool departs from the curve on the segment, from its place, a function
     /// of τ, and the longest that its fourth and its fifth derivative by τ can be; see
     /// [`CurveMotion`].
@@ -305,9 +342,7 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
     /// How far a tool is from the place at τ, and how far across the tangent there.
     fn apart(&self, tool: &[f64; D], tau: f64) -> (f64, f64) {
         let [point, first, ..] = self.curve.jet(self.parameter.at(tau));
-        let apart = difference(tool, &point);
-        let ahead = dot(&apart, &first) / dot(&first, &first);
-        (norm(&apart), norm(&along(&apart, -ahead, &first)))
+        length_and_across(&difference(tool, &point), &first)
     }
 
     /// The same where other things are known of the difference e of tool and curve: M, which may be
@@ -320,9 +355,33 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
         fourth: f64,
         between: impl Fn(f64) -> f64,
     ) -> f64 {
+        self.departure_at_nodes(|tau| self.apart(&tool(tau), tau), fourth, between)
+    }
+
+    /// The same from the difference e itself.
+    #[must_use]
+    pub fn departure_by_difference(
+        &self,
+        difference: impl Fn(f64) -> [f64; D],
+        fourth: f64,
+        between: impl Fn(f64) -> f64,
+    ) -> f64 {
+        let apart = |tau: f64| {
+            let [_, first, ..] = self.curve.jet(self.parameter.at(tau));
+            length_and_across(&difference(tau), &first)
+        };
+        self.departure_at_nodes(apart, fourth, between)
+    }
+
+    fn departure_at_nodes(
+        &self,
+        apart: impl Fn(f64) -> (f64, f64),
+        fourth: f64,
+        between: impl Fn(f64) -> f64,
+    ) -> f64 {
         let (mut all, mut across) = (0.0_f64, 0.0_f64);
         for tau in NODES {
-            let (apart, beside) = self.apart(&tool(tau), tau);
+            let (apart, beside) = apart(tau);
             let between = between(tau);
             all = larger_or_nan(all, apart + between);
             across = larger_or_nan(across, beside + between);
@@ -349,6 +408,28 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
 
     /// The largest that 16 τ² (1 - τ)² |τ - ½| is.
     pub const WEIGHTED: f64 = WEIGHTED;
+}
+
+/// How long a vector is, and the part of it that is across another.
+fn length_and_across<const D: usize>(vector: &[f64; D], other: &[f64; D]) -> (f64, f64) {
+    let ahead = dot(vector, other) / dot(other, other);
+    (norm(vector), norm(&along(vector, -ahead, other)))
+}
+
+/// Where a point that runs along a curve is near some τ₀: [`CurveMotion::series`].
+///
+/// ```text
+/// P(τ) = Σ Pₖ uᵏ/k! + rest    u = u₁ h + u₂ h² + u₃ h³,  h = τ - τ₀    |rest| ≤ max |P₆| |u|⁶/720
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::exhaustive_structs, reason = "all of a series")]
+pub struct MotionSeries<const D: usize> {
+    /// P₀ to P₅, by the curve's own parameter.
+    pub derivatives: [[f64; D]; 6],
+    /// u₁ to u₃
+    pub parameter: [f64; 3],
+    /// The longest that P₆ is anywhere.
+    pub longest_sixth: f64,
 }
 
 /// A unit vector of the plane that turns while its angle runs a cubic: what a link of an arm does,
