@@ -1,6 +1,6 @@
 //! Planned turns: where the firmware's accumulators, counted tick by tick, bring a motor.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use dancer::{Easing, Law, Motor, TurnError};
 use pattern_codec::dance::{Threshold, Timing};
@@ -103,21 +103,27 @@ proptest! {
 
 /// Every number of half steps that some speeds make in a number of frames, tick by tick.
 fn makeable(threshold: u16, frame_ticks: u32, frames: u16) -> HashSet<i64> {
+    // What a frame makes does not depend on the position.
+    let mut frame_after = HashMap::new();
     let mut reached = HashSet::from([(0, 0)]);
     for _ in 0..frames {
-        let after = |&(position, accumulator): &(i64, i64)| {
-            (0..=127).map(move |speed| {
-                let mut firmware = Firmware {
-                    law: Law::Reset,
-                    threshold: threshold.into(),
-                    accumulator,
-                    position,
+        let before = core::mem::take(&mut reached);
+        for (position, accumulator) in before {
+            let after = frame_after.entry(accumulator).or_insert_with(|| {
+                let frame = |speed| {
+                    let mut firmware = Firmware {
+                        law: Law::Reset,
+                        threshold: threshold.into(),
+                        accumulator,
+                        position: 0,
+                    };
+                    firmware.ticks(speed, frame_ticks);
+                    (firmware.position, firmware.accumulator)
                 };
-                firmware.ticks(speed, frame_ticks);
-                (firmware.position, firmware.accumulator)
-            })
-        };
-        reached = reached.iter().flat_map(after).collect();
+                (0..=127).map(frame).collect::<HashSet<_>>()
+            });
+            reached.extend(after.iter().map(|(by, left)| (position + by, *left)));
+        }
     }
     reached.into_iter().map(|(position, _)| position).collect()
 }
