@@ -65,6 +65,25 @@ pub(crate) trait Bounded: Number {
     fn most(&self) -> f64;
 }
 
+/// I - Y J
+pub(crate) fn from_one<T: Number, const N: usize>(
+    y: &Matrix<N>,
+    slopes: &[[T; N]; N],
+) -> [[T; N]; N] {
+    let mut difference = [[T::from(0.0); N]; N];
+    for (number, (row, factors)) in difference.iter_mut().zip(y).enumerate() {
+        if let Some(own) = row.get_mut(number) {
+            *own = T::from(1.0);
+        }
+        for (factor, slopes) in factors.iter().zip(slopes) {
+            for (value, slope) in row.iter_mut().zip(slopes) {
+                *value = *value - *slope * *factor;
+            }
+        }
+    }
+    difference
+}
+
 /// All matrices that the slopes of the axes by the tool's coordinates can be on a piece of a path.
 ///
 /// With Y the inverse of the matrix in their middle and J any of them, also a mean of some,
@@ -91,17 +110,7 @@ impl<const N: usize> Enclosure<N> {
 
     /// The same by an inverse of one of them, or about one.
     pub(crate) fn by<T: Bounded>(y: &Matrix<N>, slopes: &[[T; N]; N]) -> Option<Self> {
-        let mut rest = [0.0; N];
-        for (number, (y, rest)) in y.iter().zip(&mut rest).enumerate() {
-            for column in 0..N {
-                let mut product = T::from(if number == column { -1.0 } else { 0.0 });
-                for (factor, row) in y.iter().zip(slopes) {
-                    let slope = row.get(column).copied();
-                    product = product + slope.unwrap_or_else(|| T::from(f64::NAN)) * *factor;
-                }
-                *rest += product.most();
-            }
-        }
+        let rest = from_one(y, slopes).map(|row| row.iter().map(Bounded::most).sum());
         // Written so that NaN is singular.
         let is_regular = largest(&rest) < 1.0;
         is_regular.then_some(Self {

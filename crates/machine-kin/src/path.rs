@@ -1,11 +1,11 @@
 //! Curves of the tool as paths of a machine's axes, to be timed by `path-timing`.
 
 mod around;
-mod beside;
 mod bound;
 mod check;
 mod corridor;
 mod error;
+mod look_beside;
 mod nodes;
 mod series;
 mod stretch;

@@ -7,7 +7,7 @@ use crate::matrix::{Matrix, both, larger_or_nan, product};
 use crate::model::Model;
 use crate::{Gradient, Machine, Refusal};
 
-/// Coefficients of the Jacobian's Taylor models.
+/// Coefficients of the Taylor models.
 const K: usize = 4;
 
 /// What is known of a machine within a radius of a piece of its path.
@@ -20,10 +20,7 @@ pub(super) struct Around<const N: usize> {
 
 impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// The axes along a piece.
-    pub(super) fn axes<const K: usize>(
-        &self,
-        stretch: &Stretch<N>,
-    ) -> Result<[Model<K>; N], Refusal> {
+    pub(super) fn axes(&self, stretch: &Stretch<N>) -> Result<[Model<K>; N], Refusal> {
         let tool = stretch.models(&[0.0; N]);
         self.machine.inverse(tool, self.branch)
     }

@@ -168,7 +168,7 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     ) -> Option<[f64; N]> {
         let mut largest = [0.0; N];
         pieces(FINEST, |part, can_halve| {
-            let jets = Stretch::new(motion, part, self.rounding).jets::<5>();
+            let jets = Stretch::new(motion, part, self.rounding).jets();
             let axes = self.machine.inverse(jets, self.branch).ok()?;
             let fourth = axes.map(|axis| {
                 let [.., fourth] = *axis.coefficients();

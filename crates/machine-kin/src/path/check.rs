@@ -49,9 +49,9 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// |R| ≤ |a₃| + r    R' = q' - 2 a₁ ∓ 4 a₂    |ε| ≤ 4 |a₂| max |(σ²)⁗|/384 + 2 |R| + 4/27 (v₀ + v₁) max |R'|
     /// ```
     ///
-    /// For all cubics with the mean speed 1 and v₀ + v₁ = 2, (σ²)⁗ = 6 σ"² ≤ 24. The squares of all axes are off by
-    /// the same share: with Y about the inverse of the Jacobian halfway, Y ε is at most |Y 4 a₂| max
-    /// |(σ²)⁗|/384 and |Y| times the rest.
+    /// For all cubics with the mean speed 1 and v₀ + v₁ = 2, (σ²)⁗ = 6 σ"² ≤ 24. The squares of all
+    /// axes are off by the same share: with Y about the inverse of the Jacobian halfway, Y ε is at
+    /// most |Y 4 a₂| max |(σ²)⁗|/384 and |Y| times the rest.
     ///
     /// The tool is then within what all Jacobians in the path's corridor say of that, or those in
     /// one of this segment alone, if that is not beyond the corridor, where the inverse is defined
@@ -106,7 +106,7 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// The most that each axis is off by from the path at the same time: see
     /// [`check_span`](Self::check_span).
     fn errors(&self, stretch: &Stretch<N>, ends: &Ends<N>) -> Option<Errors<N>> {
-        let axes = self.axes::<4>(stretch).ok()?;
+        let axes = self.axes(stretch).ok()?;
         let [before, after] = &ends.slopes;
         let mut errors = Errors {
             squares: [0.0; N],

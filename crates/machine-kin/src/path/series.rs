@@ -4,7 +4,7 @@ use path_timing::{Cubic, CurveMotion};
 
 use super::MachinePath;
 use super::stretch::{ROUNDING, Stretch};
-use crate::matrix::{Matrix, inverse, largest, norm, product};
+use crate::matrix::{Matrix, from_one, inverse, largest, norm, product};
 use crate::model::Model;
 use crate::{Gradient, Machine, Number};
 
@@ -58,10 +58,10 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     ) -> Option<f64> {
         let corridor = &self.beside.as_ref()?.corridor;
         let apart = self.axes_apart(motion, cubics)?;
-        let within = largest(&corridor.off(&apart.most())?);
+        let within = largest(&corridor.off(&apart.most)?);
         let turning = self.turning(motion, within)?;
         let size = turning.y.map(|row| row.map(f64::abs));
-        let most = largest(&product(&size, &apart.most())) / turning.left();
+        let most = largest(&product(&size, &apart.most)) / turning.left();
         let most = most.min(within);
 
         let series = turning.series(&apart);
@@ -101,26 +101,23 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     fn axes_apart(&self, motion: &CurveMotion<'_, N>, cubics: &[Cubic; N]) -> Option<AxesApart<N>> {
         let tool = self.series::<K>(motion);
         let models = self.machine.inverse(tool, self.branch).ok()?;
-        let mut apart = AxesApart {
-            coefficients: [[0.0; N]; K],
-            rests: [0.0; N],
-        };
+        let (mut coefficients, mut rests) = ([[0.0; N]; K], [0.0; N]);
         let axes = models.iter().zip(cubics).zip(&self.axes);
         for (number, ((model, cubic), axis)) in axes.enumerate() {
             let mut difference = difference(cubic, model);
             let [halfway, ..] = &mut difference;
             *halfway = axis.difference(*halfway);
-            for (row, difference) in apart.coefficients.iter_mut().zip(difference) {
+            for (row, difference) in coefficients.iter_mut().zip(difference) {
                 if let Some(place) = row.get_mut(number) {
                     *place = difference;
                 }
             }
             let size = cubic.control_points().map(f64::abs).iter().sum::<f64>();
-            if let Some(rest) = apart.rests.get_mut(number) {
+            if let Some(rest) = rests.get_mut(number) {
                 *rest = model.rest() + (size + model.middle().abs()) * ROUNDING;
             }
         }
-        Some(apart)
+        Some(AxesApart::new(coefficients, rests))
     }
 
     /// How Jacobians within `most` of the curve change along a segment; none where one may be
@@ -138,16 +135,18 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
 
 /// How far axes are from where they should be along a segment.
 struct AxesApart<const N: usize> {
-    /// d
-    coefficients: [[f64; N]; K],
+    /// d₀, d₁, d₆ and d₇: the factors of w.
+    factors: [[f64; N]; 4],
+    /// l₂ to l₅
+    left: [[f64; N]; 4],
     /// r
     rests: [f64; N],
+    /// The most that each is off by.
+    most: [f64; N],
 }
 
 impl<const N: usize> AxesApart<N> {
-    /// The factors of w, from d₀, and what is left.
-    fn parts(&self) -> ([[f64; N]; 4], [[f64; N]; 4]) {
-        let [d0, d1, d2, d3, d4, d5, d6, d7] = self.coefficients;
+    fn new([d0, d1, d2, d3, d4, d5, d6, d7]: [[f64; N]; K], rests: [f64; N]) -> Self {
         let sum = |a: [f64; N], b: [f64; N], by: f64, c: [f64; N], factor: f64| {
             let mut sum = a;
             for (sum, (b, c)) in sum.iter_mut().zip(b.iter().zip(c)) {
@@ -155,29 +154,27 @@ impl<const N: usize> AxesApart<N> {
             }
             sum
         };
-        (
-            [d0, d1, d6, d7],
-            [
-                sum(d2, d0, 2.0, d6, -1.0),
-                sum(d3, d1, 2.0, d7, -1.0),
-                sum(d4, d0, -1.0, d6, 2.0),
-                sum(d5, d1, -1.0, d7, 2.0),
-            ],
-        )
-    }
-
-    /// The most.
-    fn most(&self) -> [f64; N] {
-        let ([halfway, others @ ..], left) = self.parts();
-        let mut most = self.rests;
-        let swings = others.iter().zip(SWINGS);
-        let parts = swings.chain(left.iter().map(|left| (left, 1.0)));
-        for (part, swing) in parts.chain([(&halfway, 1.0)]) {
+        let left = [
+            sum(d2, d0, 2.0, d6, -1.0),
+            sum(d3, d1, 2.0, d7, -1.0),
+            sum(d4, d0, -1.0, d6, 2.0),
+            sum(d5, d1, -1.0, d7, 2.0),
+        ];
+        let factors = [d0, d1, d6, d7];
+        let mut most = rests;
+        let weights = [1.0].into_iter().chain(SWINGS);
+        let parts = factors.iter().zip(weights);
+        for (part, weight) in parts.chain(left.iter().map(|left| (left, 1.0))) {
             for (most, part) in most.iter_mut().zip(part) {
-                *most += part.abs() * swing;
+                *most += part.abs() * weight;
             }
         }
-        most
+        Self {
+            factors,
+            left,
+            rests,
+            most,
+        }
     }
 }
 
@@ -195,23 +192,16 @@ struct Turning<const N: usize> {
 
 impl<const N: usize> Turning<N> {
     fn new(jacobian: &[[Model<SLOPES>; N]; N]) -> Option<Self> {
+        let y = inverse(jacobian.map(|row| row.map(Number::middle)))?;
         let mut turning = Self {
-            y: inverse(jacobian.map(|row| row.map(Number::middle)))?,
+            y,
             rest: [0.0; N],
             turns: [[[0.0; N]; N]; SLOPES - 1],
             sums: [0.0; N],
         };
-        let rows = turning
-            .y
-            .iter()
-            .zip(turning.rest.iter_mut().zip(&mut turning.sums));
-        for (number, (y, (rest, sum))) in rows.enumerate() {
-            for column in 0..N {
-                let mut turn = Model::from(if number == column { 1.0 } else { 0.0 });
-                for (factor, row) in y.iter().zip(jacobian) {
-                    let slope = row.get(column).copied();
-                    turn = turn - slope.unwrap_or_else(|| Model::from(f64::NAN)) * *factor;
-                }
+        let rows = turning.rest.iter_mut().zip(&mut turning.sums);
+        for (number, ((rest, sum), row)) in rows.zip(from_one(&y, jacobian)).enumerate() {
+            for (column, turn) in row.iter().enumerate() {
                 let [here, others @ ..] = turn.coefficients();
                 *rest += here.abs() + turn.rest();
                 for (turn, other) in turning.turns.iter_mut().zip(others) {
@@ -234,8 +224,7 @@ impl<const N: usize> Turning<N> {
 
     /// v
     fn series(&self, apart: &AxesApart<N>) -> [[f64; N]; SLOPES] {
-        let (factors, _) = apart.parts();
-        let mut series = factors.map(|factors| product(&self.y, &factors));
+        let mut series = apart.factors.map(|factors| product(&self.y, &factors));
         let [halfway, others @ ..] = &mut series;
         for (part, turn) in others.iter_mut().zip(&self.turns) {
             for (part, turned) in part.iter_mut().zip(product(turn, halfway)) {
@@ -247,13 +236,12 @@ impl<const N: usize> Turning<N> {
 
     /// Σ |Y lₖ| + |Y| r + ν E, with what the series is rounded by.
     fn unknown(&self, apart: &AxesApart<N>, size: &Matrix<N>, most: f64) -> [f64; N] {
-        let (_, left) = apart.parts();
         let mut unknown = product(size, &apart.rests);
         for (unknown, rest) in unknown.iter_mut().zip(self.rest) {
             *unknown += rest * most;
         }
-        let rounding = product(size, &apart.most()).map(|size| size * ROUNDING);
-        let left = left.iter().map(|left| product(&self.y, left));
+        let rounding = product(size, &apart.most).map(|size| size * ROUNDING);
+        let left = apart.left.iter().map(|left| product(&self.y, left));
         for part in left.chain([rounding]) {
             for (unknown, part) in unknown.iter_mut().zip(part) {
                 *unknown += part.abs();

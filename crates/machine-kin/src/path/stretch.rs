@@ -47,32 +47,30 @@ impl<const N: usize> Stretch<N> {
     /// ```text
     /// |P⁽ᵏ⁾(τ) - P⁽ᵏ⁾(m)| ≤ |P⁽ᵏ⁺¹⁾(m)| t + |P⁽ᵏ⁺²⁾(m)| t²/2 + max |P⁽ᵏ⁺³⁾| t³/6      t = max |τ - m|
     /// ```
-    pub(super) fn jets<const K: usize>(&self) -> [Jet<Interval, K>; N] {
+    pub(super) fn jets(&self) -> [Jet<Interval, 5>; N] {
         let [_, _, l3, l4, l5] = self.longest;
         let (t, t2) = (self.half, self.half * self.half / 2.0);
         let t3 = t2 * t / 3.0;
         let jet = |[p, p1, p2, p3, p4]: [f64; 5]| {
             let [a1, a2, a3, a4] = [p1, p2, p3, p4].map(f64::abs);
-            self.coefficients([
+            let derivatives = [
                 (p, a1 * t + a2 * t2 + l3 * t3),
                 (p1, a2 * t + a3 * t2 + l4 * t3),
                 (p2, a3 * t + a4 * t2 + l5 * t3),
                 (p3, a4 * t + l5 * t2),
                 (p4, l5 * t),
-            ])
+            ];
+            let mut coefficients = [Interval::UNKNOWN; 5];
+            let known = derivatives.iter().zip(self.roundings()).zip(FACTORIALS);
+            for (coefficient, (((value, by), rounding), factor)) in
+                coefficients.iter_mut().zip(known)
+            {
+                let by = by * (1.0 + ROUNDING) + rounding;
+                *coefficient = Interval::around(*value, by) * factor;
+            }
+            Jet::new(coefficients)
         };
         transposed(&self.middle).map(jet)
-    }
-
-    /// From derivatives in the middle and what they change by, with what they are rounded by.
-    fn coefficients<const K: usize>(&self, derivatives: [(f64, f64); 5]) -> Jet<Interval, K> {
-        let mut coefficients = [Interval::UNKNOWN; K];
-        let known = derivatives.iter().zip(self.roundings()).zip(FACTORIALS);
-        for (coefficient, (((value, by), rounding), factor)) in coefficients.iter_mut().zip(known) {
-            let by = by * (1.0 + ROUNDING) + rounding;
-            *coefficient = Interval::around(*value, by) * factor;
-        }
-        Jet::new(coefficients)
     }
 
     /// Every place within a radius of the part, along its time from -1 to 1.

@@ -166,7 +166,7 @@ impl<const N: usize> Survey<N> {
             reason,
         };
         let beside = self.beside.and_then(|before| {
-            let next = path.beside(&stretch, self.size)?;
+            let next = path.look_beside(&stretch, self.size)?;
             Some(before.and(&next))
         });
         let edge = self.size * EDGE;
@@ -179,7 +179,7 @@ impl<const N: usize> Survey<N> {
                 return Err(PathError::Singular { s: from, point });
             }
         }
-        let positions = path.axes::<4>(&stretch).map_err(refused)?;
+        let positions = path.axes(&stretch).map_err(refused)?;
         let axes = path.axes.iter().zip(near);
         for (position, (axis, near)) in positions.into_iter().zip(axes) {
             let position = position.range();

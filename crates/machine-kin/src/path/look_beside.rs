@@ -23,7 +23,7 @@ const MODEL: usize = 3;
 impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// What is known beside a piece of a path of this size; none where something there cannot be
     /// reached, or is singular, or may be, or the piece is too long to say.
-    pub(super) fn beside(&self, piece: &Stretch<N>, size: f64) -> Option<Beside<N>> {
+    pub(super) fn look_beside(&self, piece: &Stretch<N>, size: f64) -> Option<Beside<N>> {
         let (on_curve, _) = self.on_curve(piece)?;
         if on_curve.spread() > ON_CURVE {
             return None;
