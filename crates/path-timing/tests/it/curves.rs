@@ -2,7 +2,9 @@
 
 use core::f64::consts::PI;
 
-use path_timing::{AxisLimits, Curve, CurveError, Knot, PlanError, Row, Span, Table, ToolLimits};
+use path_timing::{
+    AxisLimits, Curve, CurveError, CurveMotion, Knot, PlanError, Row, Span, Table, ToolLimits,
+};
 
 use crate::support::polyline::{smoothed, within};
 use crate::support::vectors::{bits, dot, norm, sub};
@@ -360,4 +362,70 @@ fn spans_of_several_curves_follow_each_other() {
         (spans, before) = (spans + 1, (leg, span.s[1]));
     }
     assert_eq!((spans + 1, before.0), (table.len(), curves.len() - 1));
+}
+
+proptest! {
+    /// The series of a point that is accelerated along a curve, beside its places: within the rest.
+    #[test]
+    fn places_of_a_motion_are_those_of_its_series(
+        number in 0_usize..3,
+        from in 0.0..0.7_f64,
+        share in 0.02..0.3_f64,
+        speeds in [0.0..2.0_f64, 0.0..2.0],
+        tau in 0.0..=1.0_f64,
+        other in 0.0..=1.0_f64,
+    ) {
+        let curve = curves()[number];
+        let s = [from, from + share].map(|part| curve.length() * part);
+        let way = s[1] - s[0];
+        let [before, after] = [0, 1].map(|end| curve.at(s[end]).tangent.map(|x| x * way * speeds[end]));
+        let motion = CurveMotion::new(&curve, s, [&before, &after], 1.0);
+        let series = motion.series(tau);
+        let [u1, u2, u3] = series.parameter;
+        let h = other - tau;
+        let u = h * (u1 + h * (u2 + h * u3));
+        let mut place = [0.0; 3];
+        let divisors = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+        for (derivative, divisor) in series.derivatives.iter().zip(divisors).rev() {
+            let factor = u / divisor;
+            for (place, derivative) in place.iter_mut().zip(derivative) {
+                *place = *place * factor + derivative;
+            }
+        }
+        let rest = series.longest_sixth * u.powi(6) / 720.0;
+        let off = norm(sub(place, motion.at(other)));
+        prop_assert!(off <= rest + ROUNDING, "{off} {rest}");
+    }
+
+    /// Evenly along the parameter: the same places as any other motion, one after the other.
+    #[test]
+    fn an_even_motion_runs_from_place_to_place(number in 0_usize..3, from in 0.0..0.7_f64, share in 0.02..0.3_f64) {
+        let curve = curves()[number];
+        let s = [from, from + share].map(|part| curve.length() * part);
+        let motion = CurveMotion::evenly(&curve, s);
+        for (tau, s) in [0.0, 1.0].into_iter().zip(s) {
+            prop_assert!(norm(sub(motion.at(tau), curve.at(s).point)) <= ROUNDING);
+        }
+        let [u1, u2, u3] = motion.series(0.3).parameter;
+        prop_assert!(u1 > 0.0 && u2.abs() <= u1 * ROUNDING && u3.abs() <= u1 * ROUNDING);
+    }
+
+    /// How far a tool is off says as much as where it is.
+    #[test]
+    fn a_tool_s_place_and_its_difference_depart_alike(
+        number in 0_usize..3,
+        off in prop::array::uniform3(-1e-2..1e-2_f64),
+        fourth in 0.0..10.0_f64,
+    ) {
+        let curve = curves()[number];
+        let motion = CurveMotion::evenly(&curve, [0.2, 0.4].map(|part| curve.length() * part));
+        let difference = |tau: f64| off.map(|x| x * 16.0 * tau * tau * (1.0 - tau) * (1.0 - tau));
+        let tool = |tau: f64| {
+            let [place, by] = [motion.at(tau), difference(tau)];
+            [0, 1, 2].map(|k| place[k] + by[k])
+        };
+        let by_place = motion.departure_between(tool, fourth, |_| 1e-6);
+        let by_difference = motion.departure_by_difference(difference, fourth, |_| 1e-6);
+        prop_assert!((by_place - by_difference).abs() <= ROUNDING);
+    }
 }
