@@ -93,11 +93,12 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
             off.and_then(within).is_some()
         };
         let most = errors.most();
-        if is_free(self.beside.and_then(|path| path.corridor.off(&most))) {
+        let beside = self.beside_of(&motion);
+        if is_free(beside.and_then(|path| path.corridor.off(&most))) {
             return Ok(());
         }
         // Of a part of the path more is known.
-        let (mut corridors, y) = self.corridors(&stretch, &most).ok_or(coarse)?;
+        let (mut corridors, y) = self.corridors(beside, &stretch, &most).ok_or(coarse)?;
         let made = errors.through(&y);
         let stays = corridors.any(|own| is_free(own.off_by(made)));
         stays.then_some(()).ok_or(coarse)

@@ -1,5 +1,7 @@
 //! Looking beside a path, and beside one segment of it, for where the inverse is regular.
 
+use path_timing::CurveMotion;
+
 use super::MachinePath;
 use super::corridor::{Beside, Corridor};
 use super::stretch::Stretch;
@@ -35,15 +37,22 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         })
     }
 
+    /// What is known beside the path, if the motion stays on it: what turns back may leave it at its
+    /// ends.
+    pub(super) fn beside_of(&self, motion: &CurveMotion<'_, N>) -> Option<&Beside<N>> {
+        self.beside.as_ref().filter(|_| motion.goes_forward())
+    }
+
     /// Corridors of one segment whose axes are off by so much: by what is known beside all of the
     /// path, and by a look at the segment alone; and about the inverse of the Jacobian halfway.
     pub(super) fn corridors(
         &self,
+        beside: Option<&Beside<N>>,
         segment: &Stretch<N>,
         errors: &[f64; N],
     ) -> Option<(impl Iterator<Item = Corridor<N>>, Matrix<N>)> {
         let (on_curve, y) = self.on_curve(segment)?;
-        let of_path = self.beside.and_then(|path| path.of_part(&on_curve));
+        let of_path = beside.and_then(|path| path.of_part(&on_curve));
         let radius = largest(&on_curve.off(errors)) * 2.0 + self.rounding;
         let own = core::iter::once_with(move || {
             let around = self.around(segment, &[radius; N]).ok()?;

@@ -39,24 +39,24 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     /// ```
     ///
     /// with d from their Taylor models, l what is left, r with rounding. The tool is where J e = ε,
-    /// J a mean of Jacobians from P to P + e, which are in the corridor, so that |e| is at most
-    /// what that says, E. With Y about the inverse halfway, e = Y ε + (I - Y J) e, and by Taylor
-    /// models of all Jacobians within E of the curve I - Y J is C(t) = Σ Cₖ tᵏ, k from 1, but for
-    /// ν. So with v₀ = Y d₀ and vₖ = Y (d₁, d₆, d₇)ₖ + Cₖ v₀ the tool is off by
+    /// J a mean of Jacobians from P, which goes forward on the path, to P + e, which are in its
+    /// corridor, so that |e| is at most what that says, E. With Y about the inverse halfway, e = Y ε
+    /// + (I - Y J) e, and by Taylor models of all Jacobians within E of the curve I - Y J is C(t) =
+    /// Σ Cₖ tᵏ, k from 1, but for ν. So with v₀ = Y d₀ and vₖ = Y (d₁, d₆, d₇)ₖ + Cₖ v₀ the tool is
+    /// off by
     ///
     /// ```text
     /// e = w Σ vₖ tᵏ + Σ Y lₖ tᵏ + C (e - w v₀) ± (|Y| r + ν E)
     /// ```
     ///
-    /// where e - w v₀ is at most the rest of this over 1 - |C|. The first sum is looked at at the
-    /// nodes of [`CurveMotion`]; all else is a bound β. The place ahead is on the segment, or
-    /// beyond its end by β at most, where 32 Σ |vₖ| is less than the distance.
+    /// where e - w v₀ is at most the rest of this over 1 - |C|. Of the first sum [`CurveMotion`] says
+    /// how far it is from the curve, with M = 384 Σ |vₖ|; all else is added.
     pub(super) fn departure_by_series(
         &self,
         motion: &CurveMotion<'_, N>,
         cubics: &[Cubic; N],
     ) -> Option<f64> {
-        let corridor = &self.beside.as_ref()?.corridor;
+        let corridor = &self.beside_of(motion)?.corridor;
         let apart = self.axes_apart(motion, cubics)?;
         let within = largest(&corridor.off(&apart.most)?);
         let turning = self.turning(motion, within)?;
@@ -75,14 +75,31 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
         }
 
         let unknown = norm(&unknown) * (1.0 + ROUNDING) + self.rounding;
+        let bound = unknown + self.departure_of(motion, &series);
+        // Written so that NaN is none.
+        let is_known = unknown <= bound * UNKNOWN || bound <= self.rounding * ROUNDED;
+        is_known.then_some(bound)
+    }
+
+    /// How far a tool that is off by w Σ vₖ tᵏ is from the curve at most.
+    fn departure_of(&self, motion: &CurveMotion<'_, N>, series: &[[f64; N]; SLOPES]) -> f64 {
+        let [halfway, ..] = series;
+        let mut tool = motion.at(0.5);
+        for (tool, off) in tool.iter_mut().zip(halfway) {
+            *tool += off;
+        }
         let sizes = series.map(|part| norm(&part));
-        let bends = sizes.iter().zip(BENDS).map(|(size, bend)| size * bend);
-        let between = bends.sum::<f64>() * BETWEEN + unknown;
+        let sum = |weights: &[f64]| {
+            let parts = sizes.iter().rev().zip(weights.iter().rev());
+            parts.map(|(size, weight)| size * weight).sum::<f64>()
+        };
+        let fourth = 384.0 * sizes.iter().sum::<f64>();
+        let (beside, between) = (sum(&SWINGS), sum(&BENDS) * BETWEEN);
         let off = |tau: f64| {
             let t = 2.0 * tau - 1.0;
             let mut factor = (1.0 - t * t) * (1.0 - t * t);
             let mut off = [0.0; N];
-            for part in &series {
+            for part in series {
                 for (off, part) in off.iter_mut().zip(part) {
                     *off += part * factor;
                 }
@@ -90,11 +107,9 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
             }
             off
         };
-        let fourth = 384.0 * sizes.iter().sum::<f64>();
-        let bound = motion.departure_by_difference(off, fourth, |_| between) + unknown;
-        // Written so that NaN is none.
-        let is_known = 2.0 * unknown <= bound * UNKNOWN || bound <= self.rounding * ROUNDED;
-        is_known.then_some(bound)
+        motion
+            .departure_by_middle(&tool, fourth, |_| beside, between)
+            .unwrap_or_else(|| motion.departure_by_difference(off, fourth, |_| between))
     }
 
     /// How far the cubics are off the axes' places along a segment.

@@ -236,6 +236,12 @@ impl<'a, const D: usize> CurveMotion<'a, D> {
         }
     }
 
+    /// Whether the place is known to go forward all the way, and so to stay between both ends.
+    #[must_use]
+    pub fn goes_forward(&self) -> bool {
+        self.distance > 0.0
+    }
+
     /// The place on the curve at τ.
     #[must_use]
     pub fn at(&self, tau: f64) -> [f64; D] {
