@@ -40,10 +40,10 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     ///
     /// with d from their Taylor models, l what is left, r with rounding. The tool is where J e = ε,
     /// J a mean of Jacobians from P, which goes forward on the path, to P + e, which are in its
-    /// corridor, so that |e| is at most what that says, E. With Y about the inverse halfway, e = Y ε
-    /// + (I - Y J) e, and by Taylor models of all Jacobians within E of the curve I - Y J is C(t) =
-    /// Σ Cₖ tᵏ, k from 1, but for ν. So with v₀ = Y d₀ and vₖ = Y (d₁, d₆, d₇)ₖ + Cₖ v₀ the tool is
-    /// off by
+    /// corridor, so that |e| is at most what that says, E. With Y about the inverse halfway
+    /// e = Y ε + (I - Y J) e, and by Taylor models of all Jacobians within E of the curve I - Y J is
+    /// C(t) = Σ Cₖ tᵏ, k from 1, but for ν. So with v₀ = Y d₀ and vₖ = Y (d₁, d₆, d₇)ₖ + Cₖ v₀ the
+    /// tool is off by
     ///
     /// ```text
     /// e = w Σ vₖ tᵏ + Σ Y lₖ tᵏ + C (e - w v₀) ± (|Y| r + ν E)
