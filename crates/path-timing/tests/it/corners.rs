@@ -150,7 +150,7 @@ fn more_segments_beside_jumps_take_no_longer() {
 const MORE_SEGMENTS: f64 = 1.0001;
 
 /// Knots, more than any of the polylines takes.
-const MOST: usize = 512;
+const MOST: usize = 1024;
 
 /// With 16 segments and more on each leg, which stand elsewhere, a jump next to rest takes up to
 /// 0.16 % longer than the stop.
