@@ -84,8 +84,8 @@ impl<T: RealField + Trig> Arm<T> {
         } else {
             -side
         };
-        // The sine of π as the float has it.
-        let is_same_side = beyond <= T::default_epsilon();
+        // The sine of π as the float has it, and of what that is less whole turns.
+        let is_same_side = beyond <= T::default_epsilon() * candidate.elbow.abs().max(T::one());
         is_same_side && norm(self.tip(candidate) - tool) <= rounding
     }
 

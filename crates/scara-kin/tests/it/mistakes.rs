@@ -223,6 +223,23 @@ fn the_centre_of_equal_links_is_said_to_be_degenerate() {
     assert!(matches!(refused, Err(InverseError::JointLimit { .. })));
 }
 
+/// Half a turn that is taken back by a whole one is rounded twice.
+#[test]
+fn a_folded_arm_comes_back_into_its_range_in_f32() {
+    let ranges = Limits {
+        shoulder: JointRange::new(0.5, 5.5).unwrap(),
+        elbow: JointRange::unlimited(),
+    };
+    let arm = Arm::<f32>::new(132.0, 132.0).unwrap().with_limits(ranges);
+    for previous in [-0.0, 0.0, 0.4, 5.6, 6.2] {
+        let previous = Joints::new(previous, 0.0);
+        let (_, joints) = arm.inverse_nearest(Point2::origin(), previous).unwrap();
+        let nearest = if previous.shoulder < 3.0 { 0.5 } else { 5.5 };
+        assert_eq!(joints.shoulder, nearest, "{previous:?}");
+        assert!((joints.elbow.abs() - core::f32::consts::PI).abs() < 1e-6);
+    }
+}
+
 /// No NaN in, no NaN out.
 #[test]
 fn coordinates_that_are_not_finite_are_refused() {
