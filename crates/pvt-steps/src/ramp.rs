@@ -141,9 +141,10 @@ pub enum RampError {
 /// n a >= v² - (v0² + v1²)/2:  D = F (n/v + ((v - v0)² + (v - v1)²) / (2 v a))
 /// otherwise:                  D = F (2 p - v0 - v1) / a,  p² = n a + (v0² + v1²)/2
 /// ```
-/// D and the distances of speeding up and slowing down, F (v - v0)/a and F (v - v1)/a, are rounded
-/// to whole ticks; the speed between them follows from the distance, so that speed and acceleration
-/// are off by one part in as many as the move and its ramps have ticks. These phases are the
+/// D and the times of speeding up and slowing down, F (v - v0)/a and F (v - v1)/a, are rounded to
+/// whole ticks, of which a change takes one at least; the speed between them follows from the
+/// distance, so that speed and acceleration are off by one part in as many as the move and its ramps
+/// have ticks. These phases are the
 /// [`rows`](Self::rows) of a PVT table, and the steps those of [`PvtSteps`](crate::PvtSteps): step
 /// i where the axis passes i - 1/2 steps, less than 2 ticks and 2^-28 steps from its place on the
 /// exact trapezoid.

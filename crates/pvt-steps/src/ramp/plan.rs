@@ -62,11 +62,13 @@ impl Plan {
         let triangular = square < highest.squared();
         let peak = if triangular { square.root() } else { highest };
         let (rise, fall) = (peak.minus(v0), peak.minus(v1));
+        // A phase takes a tick at least: a row from v0 on would be as long as the whole move.
+        let steepest = |change: Real| acceleration.min(change.times(ticks));
         let seconds = if triangular {
             rise.plus(fall).over(acceleration)
         } else {
-            let lost = rise.squared().plus(fall.squared()).half();
-            distance.plus(lost.over(acceleration)).over(peak)
+            let lost = |change: Real| change.squared().half().over(steepest(change));
+            distance.plus(lost(rise).plus(lost(fall))).over(peak)
         };
         let end = if max_pulses > 0 {
             ticks.times(seconds).rounded()
@@ -81,7 +83,7 @@ impl Plan {
             })?;
 
         let phase = |change: Real, left: u64| {
-            let phase = ticks.times(change.over(acceleration)).rounded();
+            let phase = ticks.times(change.over(steepest(change))).rounded();
             phase.map_or(left, |phase| phase.min(left))
         };
         let up = phase(rise, end);

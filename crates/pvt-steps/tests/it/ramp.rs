@@ -295,6 +295,32 @@ fn nothing_to_do_takes_no_time() {
     assert!(ramp.edges().next().is_none());
 }
 
+/// 1000 steps/s are reached in less than a tick: a ramp of one tick, and the rate is kept.
+#[test]
+fn a_ramp_takes_a_tick_at_least() {
+    for accel_steps_per_s2 in [900_000_000, 2_000_000_000, u32::MAX] {
+        let limits = RampLimits {
+            start_millihertz: 0,
+            max_millihertz: 1_000_000,
+            accel_steps_per_s2,
+        };
+        let ramp = Ramp::new([1000, 0], &limits, Rate::from_hz(1_000_000).unwrap()).unwrap();
+        assert_eq!(ramp.end_ticks(), 1_000_001);
+        let rises: Vec<_> = ramp.edges().step_by(2).map(|edge| edge.ticks).collect();
+        assert_eq!(rises[0], 501);
+        assert!(rises.windows(2).all(|pair| pair[1] - pair[0] == 1000));
+        // From the rate of another move it goes on without one.
+        let ends = RampEnds {
+            entry_millihertz: 1_000_000,
+            exit_millihertz: 999_000,
+        };
+        let ramp = Ramp::between([1000], &limits, ends, Rate::from_hz(1_000_000).unwrap()).unwrap();
+        assert_eq!(ramp.end_ticks(), 1_000_000);
+        let first = ramp.edges().next().map(|edge| edge.ticks);
+        assert_eq!(first, Some(500));
+    }
+}
+
 #[test]
 fn a_ramp_starts_slowly_and_ends_slowly() {
     let limits = RampLimits {
