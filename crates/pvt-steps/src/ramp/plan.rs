@@ -63,34 +63,33 @@ impl Plan {
         let peak = if triangular { square.root() } else { highest };
         let (rise, fall) = (peak.minus(v0), peak.minus(v1));
         // A phase takes a tick at least: a row from v0 on would be as long as the whole move.
-        let steepest = |change: Real| acceleration.min(change.times(ticks));
-        let seconds = if triangular {
-            rise.plus(fall).over(acceleration)
-        } else {
-            let lost = |change: Real| change.squared().half().over(steepest(change));
-            distance.plus(lost(rise).plus(lost(fall))).over(peak)
+        let phase = |change: Real| match change {
+            Real::ZERO => Real::ZERO,
+            _ => ticks.times(change.over(acceleration)).max(Real::whole(1)),
         };
-        let end = if max_pulses > 0 {
-            ticks.times(seconds).rounded()
+        let (up, down) = (phase(rise), phase(fall));
+        let end = if max_pulses == 0 {
+            Real::ZERO
+        } else if triangular {
+            up.plus(down)
         } else {
-            Some(0)
+            let lost = rise.times(up).plus(fall.times(down)).half();
+            ticks.times(distance).plus(lost).over(peak)
         };
         let end = end
+            .rounded()
             .filter(|end| end >> END_BITS == 0)
             .ok_or(RampError::TooLong {
                 steps: max_pulses,
                 bits: END_BITS,
             })?;
 
-        let phase = |change: Real, left: u64| {
-            let phase = ticks.times(change.over(steepest(change))).rounded();
-            phase.map_or(left, |phase| phase.min(left))
-        };
-        let up = phase(rise, end);
+        let within = |phase: Real, left: u64| phase.rounded().map_or(left, |phase| phase.min(left));
+        let up = within(up, end);
         let down = if triangular {
             end - up
         } else {
-            phase(fall, end - up)
+            within(down, end - up)
         };
         // Steps a tick: the distances of the three phases sum up to the whole one.
         let [v0, v1] = [v0, v1].map(|v| v.over(ticks));
