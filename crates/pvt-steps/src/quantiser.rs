@@ -103,10 +103,12 @@ pub enum KnotError {
 /// shorter than a tick. Where the velocities of the first and the last of them differ by D steps a
 /// tick, that row departs by
 /// ```text
-/// position      D        velocity      1.5 D / T              acceleration  6 D / T²
+/// position      D (4/27 T + 1)        velocity      D (1 + 1.5 / T)
+/// acceleration  D (4 / T + 6 / T²)
 /// ```
-/// more, T in ticks. A knot that is elsewhere by more than 2^-8 steps than its velocity and the one
-/// before make it, is no such motion and refused.
+/// more, T in ticks: nothing for a motion, but much for a table that brings an axis to its speed
+/// within a tick, which is to say so by a [jump](Self::jump). A knot that is elsewhere by more than
+/// 2^-8 steps than its velocity and the one before make it, is no such motion and refused.
 ///
 /// # Jumps
 /// With [`start-stop speeds`](Self::with_start_stop_speeds), a knot of the same time and positions

@@ -344,6 +344,44 @@ fn knots_in_one_tick_are_merged() {
     assert!((ticks as f64 / hz - time_s).abs() <= 1.0 / hz);
 }
 
+/// A speed that is reached within a tick: the row after it departs by what is stated, and not at all
+/// after a jump.
+#[test]
+fn a_speed_reached_within_a_tick_is_a_departure_or_a_jump() {
+    let (speed, ticks) = (0.02, 50_000.0);
+    let scale = StepScale::new(1.0).unwrap();
+    for within_s in [1e-9, 3e-7, 9e-7] {
+        let started = |jumps: bool| {
+            let hz = Rate::from_hz(1_000_000).unwrap();
+            let mut pvt = PvtQuantiser::new(hz, [scale], [0.0]).unwrap();
+            if jumps {
+                pvt.jump([speed * 1e6]).unwrap();
+            } else {
+                let position = speed * 1e6 * within_s / 2.0;
+                assert_eq!(
+                    pvt.row(within_s, [position], [speed * 1e6]).unwrap().ticks,
+                    0
+                );
+            }
+            let before = pvt.knots().map(in_steps)[0];
+            let row = pvt
+                .row(ticks / 1e6, [speed * ticks], [speed * 1e6])
+                .unwrap();
+            Cubic::new(before, row.knots.map(in_steps)[0], f64::from(row.ticks))
+        };
+        let (merged, jumped) = (started(false), started(true));
+        let mut most = 0.0_f64;
+        for n in 0..=1000 {
+            let tick = ticks * f64::from(n) / 1000.0;
+            let off = (merged.at(tick)[0] - speed * tick).abs();
+            most = most.max(off);
+            assert!((jumped.at(tick)[0] - speed * tick).abs() < 1e-6);
+        }
+        let stated = speed * (4.0 / 27.0 * ticks + 1.0);
+        assert!(most <= stated && most > 0.99 * stated, "{most} {stated}");
+    }
+}
+
 /// What is elsewhere within a tick is no motion, and the axes can still be brought to rest.
 #[test]
 fn a_knot_elsewhere_in_the_same_tick_is_refused() {
