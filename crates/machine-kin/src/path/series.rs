@@ -89,6 +89,7 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
             *tool += off;
         }
         let sizes = series.map(|part| norm(&part));
+        // Of the last parts, as many as there are weights.
         let sum = |weights: &[f64]| {
             let parts = sizes.iter().rev().zip(weights.iter().rev());
             parts.map(|(size, weight)| size * weight).sum::<f64>()
