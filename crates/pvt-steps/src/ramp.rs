@@ -142,7 +142,7 @@ pub enum RampError {
 /// otherwise:                  D = F (2 p - v0 - v1) / a,  p² = n a + (v0² + v1²)/2
 /// ```
 /// D and the times of speeding up and slowing down, F (v - v0)/a and F (v - v1)/a, are rounded to
-/// whole ticks, of which a change takes one at least; the speed between them follows from the
+/// whole ticks, in a trapezoid one at least for a change; the speed between them follows from the
 /// distance, so that speed and acceleration are off by one part in as many as the move and its ramps
 /// have ticks. These phases are the
 /// [`rows`](Self::rows) of a PVT table, and the steps those of [`PvtSteps`](crate::PvtSteps): step

@@ -62,11 +62,14 @@ impl Plan {
         let triangular = square < highest.squared();
         let peak = if triangular { square.root() } else { highest };
         let (rise, fall) = (peak.minus(v0), peak.minus(v1));
-        // A phase takes a tick at least: a row from v0 on would be as long as the whole move.
-        let phase = |change: Real| match change {
+        // Beside a constant speed a change takes a tick at least: without a row of its own it would
+        // be spread over that.
+        let least = |change: Real| match change {
             Real::ZERO => Real::ZERO,
-            _ => ticks.times(change.over(acceleration)).max(Real::whole(1)),
+            _ if triangular => Real::ZERO,
+            _ => Real::whole(1),
         };
+        let phase = |change: Real| ticks.times(change.over(acceleration)).max(least(change));
         let (up, down) = (phase(rise), phase(fall));
         let end = if max_pulses == 0 {
             Real::ZERO
