@@ -364,6 +364,20 @@ fn spans_of_several_curves_follow_each_other() {
     assert_eq!((spans + 1, before.0), (table.len(), curves.len() - 1));
 }
 
+/// At both ends slower than two and a half times the mean, and not backwards: a point stays between
+/// them.
+#[test]
+fn a_motion_that_turns_back_does_not_go_forward() {
+    let curve = Curve::line([0.0; 3], [3.0, 4.0, 0.0]).unwrap();
+    let goes = |speeds: [f64; 2]| {
+        let along = |speed| curve.at(0.0).tangent.map(|x| x * speed * 5.0);
+        let [before, after] = speeds.map(along);
+        CurveMotion::new(&curve, [0.0, 5.0], [&before, &after], 1.0).goes_forward()
+    };
+    assert!([[1.0, 1.0], [0.0, 2.0], [2.4, 0.6]].into_iter().all(goes));
+    assert!(![[-0.1, 1.0], [1.0, 4.0]].into_iter().any(goes));
+}
+
 proptest! {
     /// The series of a point that is accelerated along a curve, beside its places: within the rest.
     #[test]

@@ -309,7 +309,7 @@ fn a_ramp_takes_a_tick_at_least() {
         let rises: Vec<_> = ramp.edges().step_by(2).map(|edge| edge.ticks).collect();
         assert_eq!(rises[0], 501);
         assert!(rises.windows(2).all(|pair| pair[1] - pair[0] == 1000));
-        // From the rate of another move it goes on without one.
+        // What begins at the rate of another move needs no ramp there.
         let ends = RampEnds {
             entry_millihertz: 1_000_000,
             exit_millihertz: 999_000,
