@@ -13,6 +13,9 @@ use crate::segment::GROWTH;
 use crate::stepping::{Pair, Pairs};
 use crate::{Axes, Knot, Row, Span, passes};
 
+/// The parts of a speed at the end of a segment that are tried where it is too high for a motor.
+const BRAKING: [f64; 8] = [0.999, 0.99, 0.97, 0.9, 0.75, 0.5, 0.25, 0.0];
+
 /// What motors carry.
 pub(super) struct Laden<'a, D: Dynamics>(pub(super) &'a TorqueLimits<D>);
 
@@ -112,7 +115,17 @@ impl<D: Dynamics> LadenPair<'_, D> {
 
     /// The speed at the end nearest to `wanted` that is found, from one that holds.
     fn nearest(&self, w0: f64, wanted: f64, known: f64) -> f64 {
-        farthest(known, wanted, |w1| self.used(w0, w1))
+        let found = farthest(known, wanted, |w1| self.used(w0, w1));
+        let is_between = (found - known).abs() > 0.0;
+        if is_between || self.used(w0, known) <= 1.0 {
+            return found;
+        }
+        // Slower than planned at a speed that a motor cannot hold: it brakes harder.
+        let holds = |w1: &f64| self.used(w0, *w1) <= 1.0;
+        let slower = BRAKING.iter().map(|part| known * part).find(holds);
+        slower.map_or(known, |slower| {
+            farthest(slower, known, |w1| self.used(w0, w1))
+        })
     }
 }
 

@@ -18,8 +18,9 @@ use crate::{Axes, AxisLimits, FeedError, Knot, Path, PlanError, Row};
 ///
 /// A segment that is run slower than the fastest that was found, at the same ratio of speeds, asks
 /// for no more where each motor has, at each speed up to that one, what friction and gravity take
-/// there. A motor that only brakes against viscous friction at a speed that it could not hold may be
-/// asked for more on the way down: ask `utilisation` of the rows where that can be.
+/// there. Where one only brakes against viscous friction at a speed that it could not hold, the
+/// machine brakes harder than planned on the way down; where even that asks for more torque than
+/// there is, the rows do: ask `utilisation` of them where that can be.
 pub struct TorqueLookAhead<'w, P: Path, I, F, D: Dynamics<Axes = P::Axes>> {
     torque: TorqueLimits<D>,
     feeder: Feeder<P, I, F>,

@@ -183,24 +183,52 @@ proptest! {
     ) {
         let paths = paths(&places);
         prop_assume!(!paths.is_empty());
-        let mut masses = ArmMasses { gravity_m_s2: 9.806_65, ..masses(1.0) };
-        masses.shoulder.viscous_nm_s = viscous;
-        masses.elbow.viscous_nm_s = 0.4 * viscous;
-        let motors = [torque, 0.5 * torque].map(|t| TorqueCurve::holding(t, 1.0, 30.0).unwrap());
-        let limits = TorqueLimits { dynamics: arm().dynamics(1e-3, masses).unwrap(), motors };
-        let mut window = [Knot::default(); 100];
-        let mut motion = limits
-            .look_ahead(&paths, [FREE; 2], |_| Ok(segments), &mut window)
-            .unwrap();
-        let mut rows = Vec::new();
-        for (count, feed) in feeds.iter().chain([&(usize::MAX, 1.0)]) {
-            rows.extend(motion.by_ref().map_while(Result::ok).take(*count));
-            motion.set_feed(*feed).unwrap();
-        }
-        rows.extend(motion.by_ref().map_while(Result::ok));
-        let used = most(&limits, &rows);
+        let used = most_in_grease(&paths, segments, [viscous, torque], &feeds);
         prop_assert!(used <= WITHIN, "{used}");
     }
+}
+
+/// The largest part of its torque that a motor is asked for, of an upright arm whose joints have
+/// viscous friction.
+fn most_in_grease(
+    paths: &[ArmPath],
+    segments: u32,
+    [viscous, torque]: [f64; 2],
+    feeds: &[(usize, f64)],
+) -> f64 {
+    let mut masses = ArmMasses {
+        gravity_m_s2: 9.806_65,
+        ..masses(1.0)
+    };
+    masses.shoulder.viscous_nm_s = viscous;
+    masses.elbow.viscous_nm_s = 0.4 * viscous;
+    let motors = [torque, 0.5 * torque].map(|t| TorqueCurve::holding(t, 1.0, 30.0).unwrap());
+    let dynamics = arm().dynamics(1e-3, masses).unwrap();
+    let limits = TorqueLimits { dynamics, motors };
+    let mut window = [Knot::default(); 100];
+    let mut motion = limits
+        .look_ahead(paths, [FREE; 2], |_| Ok(segments), &mut window)
+        .unwrap();
+    let mut rows = Vec::new();
+    for (count, feed) in feeds.iter().chain([&(usize::MAX, 1.0)]) {
+        rows.extend(motion.by_ref().map_while(Result::ok).take(*count));
+        motion.set_feed(*feed).unwrap();
+    }
+    rows.extend(motion.by_ref().map_while(Result::ok));
+    most(&limits, &rows)
+}
+
+/// Slower than planned at a speed that the elbow's motor cannot hold, a segment asked for more than
+/// its torque at the planned ratio of speeds.
+#[test]
+fn what_cannot_be_held_is_braked() {
+    let paths = paths(&[
+        [239.933_182_188_251_1, -65.617_860_405_840_94],
+        [412.179_903_799_693_8, 83.212_681_313_910_11],
+    ]);
+    let friction = [10.839_210_173_326_615, 20.617_604_798_108_218];
+    let used = most_in_grease(&paths, 34, friction, &[]);
+    assert!(used <= WITHIN, "{used}");
 }
 
 proptest! {
