@@ -10,6 +10,7 @@ use crate::passes::segment_s;
 use crate::place::Place;
 use crate::planner::time;
 use crate::reciprocals::Reciprocals;
+use crate::stretch::most_evenly;
 use crate::{Axes, Knot, Path, PlanError, Span};
 
 /// Segments beyond which rounding is all that is left of a departure.
@@ -42,7 +43,8 @@ pub(crate) struct Within<D> {
 
 /// The number of segments of a path that keeps a departure within `allowed` at any speeds, with any
 /// corners at its ends: for [`LookAhead`](crate::LookAhead), whose speeds nobody knows beforehand,
-/// and which halves those of them that the path takes for too coarse.
+/// and which halves those of them that the path takes for too coarse. Not from rest to rest but at
+/// the end of the path: with a limit of jerk a window of four or five knots may rest at each.
 ///
 /// `departure` is a bound on what a controller departs by on a segment, in any unit: see
 /// [`Table::plan_within_at_any_feed`](crate::Table::plan_within_at_any_feed).
@@ -65,7 +67,8 @@ pub fn segments_within<P: Path>(
         let mut bound = Bound::new(allowed);
         let mut from = Knot::start(start);
         while !from.ends_leg && !bound.is_far() {
-            let to = match cutting.next_knot(|_, _| true) {
+            let stretch = |from: &_, to: &_, length| most_evenly([from, to], length);
+            let to = match cutting.next_knot(stretch, |_, _| true) {
                 Err(PlanError::TooCoarse { .. }) => return Ok(f64::INFINITY),
                 to => to?,
             };

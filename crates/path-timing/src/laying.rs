@@ -42,17 +42,12 @@ impl<P: Path> Laying<P> {
         }
     }
 
-    /// The knot at a parameter behind the last one.
+    /// The knot at a parameter behind the last one, the length of its segment stretched by a factor
+    /// of the points at its ends and the length itself.
     ///
-    /// Whatever the speeds, each position of a cubic of duration 2Δs/(w₀ + w₁) lies between those
+    /// Whatever the speeds, each position of a cubic of duration 2κΔs/(w₀ + w₁) lies between those
     /// with which it begins and ends at rest: what the path allows for both, it allows for all.
-    pub(crate) fn knot(&mut self, s: f64) -> Result<Knot<P::Axes>, PlanError<P::Error>> {
-        self.stretched_knot(s, |_, _, _| 1.0)
-    }
-
-    /// As [`knot`](Self::knot), the length of its segment stretched by a factor of the points at
-    /// its ends and the length itself.
-    pub(crate) fn stretched_knot(
+    pub(crate) fn knot(
         &mut self,
         s: f64,
         stretch: impl FnOnce(&PathPoint<P::Axes>, &PathPoint<P::Axes>, f64) -> f64,
@@ -67,7 +62,7 @@ impl<P: Path> Laying<P> {
         Ok(knot)
     }
 
-    /// The same, without asking the path: for plans that nothing runs by.
+    /// The same without asking the path: for plans that nothing runs by.
     pub(crate) fn unchecked_knot(
         &mut self,
         s: f64,
@@ -151,14 +146,16 @@ impl<P: Path> Cutting<P> {
         }
     }
 
-    /// The next knot; `is_known` tells whether the path from one knot to the next is.
+    /// The next knot, the length of its segment stretched by a factor; `is_known` tells whether the
+    /// path from one knot to the next is.
     pub(crate) fn next_knot(
         &mut self,
+        stretch: impl Fn(&PathPoint<P::Axes>, &PathPoint<P::Axes>, f64) -> f64,
         is_known: impl Fn(&Knot<P::Axes>, &Knot<P::Axes>) -> bool,
     ) -> Result<Knot<P::Axes>, PlanError<P::Error>> {
         loop {
             let from = self.laying.last;
-            let refused = match self.laying.knot(self.next_s()) {
+            let refused = match self.laying.knot(self.next_s(), &stretch) {
                 Ok(to) if is_known(&from, &to) => {
                     self.advance();
                     return Ok(to);

@@ -113,7 +113,11 @@ impl<P: Path> Place<'_, P> {
         bent: f64,
         knots: &mut [Knot<P::Axes>],
     ) -> Result<u32, PlanError<P::Error>> {
-        if limits.has_jerk() || self.leg.tool().is_some() || segments < FEWEST_STRETCHED {
+        let has_tool = self.leg.tool().is_some();
+        if limits.has_jerk() && !has_tool {
+            return self.lay_by_time(limits, segments, bent, knots, stretched(limits));
+        }
+        if has_tool || segments < FEWEST_STRETCHED {
             return self.lay_plainly(limits, segments, bent, knots);
         }
         let own = self.room(segments, knots)?;
@@ -158,10 +162,21 @@ impl<P: Path> Place<'_, P> {
         bent: f64,
         knots: &mut [Knot<P::Axes>],
     ) -> Result<u32, PlanError<P::Error>> {
+        self.lay_by_time(limits, segments, bent, knots, |_, _, _| 1.0)
+    }
+
+    fn lay_by_time<R: Real>(
+        &self,
+        limits: &Reciprocals<P::Axes, R>,
+        segments: u32,
+        bent: f64,
+        knots: &mut [Knot<P::Axes>],
+        stretch: impl Fn([&PathPoint<P::Axes>; 2], f64, [f64; 2]) -> f64,
+    ) -> Result<u32, PlanError<P::Error>> {
         let own = self.room(segments, knots)?;
         let planned = self.lay_roughly(limits, own)?;
         spread(BY_TIME.bent(bent), own, planned);
-        self.lay_checked(limits, segments, knots, |_, _, _| 1.0)
+        self.lay_checked(limits, segments, knots, stretch)
     }
 
     /// The knots of the leg, of those given.
@@ -239,7 +254,7 @@ impl<P: Path> Place<'_, P> {
             let s = if is_last { length } else { knot.moved_s };
             let speeds = [before, knot.wanted];
             let stretch = |from: &_, to: &_, length| stretch([from, to], length, speeds);
-            match laying.stretched_knot(s, stretch) {
+            match laying.knot(s, stretch) {
                 Ok(laid) => {
                     (*knot, index) = (laid, index.saturating_add(1));
                     [_, before] = speeds;

@@ -13,6 +13,11 @@
 //! It is the same as a parameter that runs κ times as far between the two knots. κ is fixed when
 //! knots are laid, by the speeds of a plan before: so all forms in the speeds stay what they are.
 //! Without it a plan loses what slopes change by within a segment; with it, the square of that.
+//!
+//! With a limit of jerk it is the same κ for another reason. A parameter that speeds up evenly has
+//! its own jerk in the steps between segments, and on a bend the cubics have that of the path inside,
+//! q‴ w³, however short they are, even where the parameter's would make up for it. Parabolas have
+//! none, and the steps have all of it.
 
 use crate::number::larger;
 use crate::reciprocals::Reciprocals;
@@ -25,7 +30,7 @@ const LARGEST: f64 = 1.2;
 /// The stretch κ of a segment of a length that is passed at about these speeds.
 ///
 /// Where several axes are near their limits it is that of the least squares, each axis weighed by
-/// the fourth power of its utilisation.
+/// the fourth power of its utilisation, and with a limit of jerk by the square of its part of that.
 pub(crate) fn stretch<A: Axes>(
     limits: &Reciprocals<A>,
     [from, to]: [&PathPoint<A>; 2],
@@ -41,7 +46,11 @@ pub(crate) fn stretch<A: Axes>(
         let (v0, v1) = (p0 * w0, p1 * w1);
         let acceleration = (v1 - v0).abs() * rate * limit.acceleration;
         let used = acceleration.max(v0.abs().max(v1.abs()) * limit.speed);
-        let weight = used * used * limit.acceleration;
+        let weight = if limits.has_jerk() {
+            limit.jerk
+        } else {
+            used * used * limit.acceleration
+        };
         let mean = weight * (v0 + v1);
         own += weight * (q1 - q0) * mean;
         square += mean * mean;
@@ -55,9 +64,35 @@ pub(crate) fn stretch<A: Axes>(
     }
 }
 
-/// The stretch of a segment that is planned without; 1 with a limit of jerk or a tool, as laid.
+/// The most that a segment of a stream is stretched by.
+const LARGEST_EVENLY: f64 = 1.01;
+
+/// The stretch of a segment of a stream with a limit of jerk, whose speeds are not known: as if they
+/// were even. It is not below 1, where a segment that begins or ends at rest departs from its path by
+/// the more the more it is stretched.
+pub(crate) fn stretch_evenly<A: Axes>(
+    limits: &Reciprocals<A>,
+    ends: [&PathPoint<A>; 2],
+    length: f64,
+) -> f64 {
+    stretch(limits, ends, length, [1.0; 2]).clamp(1.0, LARGEST_EVENLY)
+}
+
+/// What that is at most, whatever the limits are: a mean of what each axis asks for is not above all
+/// of them.
+pub(crate) fn most_evenly<A: Axes>([from, to]: [&PathPoint<A>; 2], length: f64) -> f64 {
+    let positions = (from.position.as_slice().iter()).zip(to.position.as_slice());
+    let slopes = (from.slope.as_slice().iter()).zip(to.slope.as_slice());
+    let asked = positions
+        .zip(slopes)
+        .map(|((q0, q1), (p0, p1))| 2.0 * (q1 - q0) / ((p0 + p1) * length));
+    // Not a number where an axis rests, which asks for nothing.
+    asked.fold(1.0, f64::max).min(LARGEST_EVENLY)
+}
+
+/// The stretch of a segment that is planned without; 1 with limits of a tool, as laid.
 pub(crate) fn stretch_between<A: Axes>(limits: &Reciprocals<A>, [from, to]: [&Knot<A>; 2]) -> f64 {
-    if limits.has_jerk() || !to.tool.is_none() || to.ds <= 0.0 {
+    if !to.tool.is_none() || to.ds <= 0.0 {
         return 1.0;
     }
     let speeds = [from.speed, to.speed];

@@ -20,9 +20,10 @@ use crate::{Axes, AxisLimits, Knot, Path, PlanError, Span};
 /// It is a fastest table that keeps the limits of all axes. What is limited is the cubic itself:
 /// its peak speed inside, its acceleration at both ends. With the path speeds w₀, w₁ at the ends of
 /// a segment of length Δs, its duration is 2κΔs / (w₀ + w₁), with a κ from 5/6 to 6/5 for which an
-/// axis at its limit of acceleration stays there; 1 where a jerk, a torque or a tool is limited,
-/// with fewer than 16 segments, and in single precision. At the end of each path the machine does
-/// what that path's [`corner`](Path::corner) says.
+/// axis at its limit of acceleration stays there, and none of a limit of jerk is used up by how the
+/// path bends; 1 where a torque or a tool is limited, without jerk with fewer than 16 segments, and
+/// in single precision. At the end of each path the machine does what that path's
+/// [`corner`](Path::corner) says.
 ///
 /// Where an axis has a limit of jerk: between rows a cubic has one jerk; at a row its acceleration
 /// steps, which counts as a jerk over the time between the middles of the segments, and so does

@@ -7,6 +7,7 @@ use crate::leg::Leg;
 use crate::look_ahead::Window;
 use crate::planner::{Beyond, check_gap, fewest, junction_to};
 use crate::reciprocals::Reciprocals;
+use crate::stretch::stretch_evenly;
 use crate::{Corner, Knot, Path, PlanError};
 
 /// Paths of which the first have entered a window.
@@ -85,9 +86,17 @@ impl<P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P::Er
                 self.entering = Some(self.begin(path, window, limits)?);
                 continue;
             };
-            let to = entering.next_knot(|from, to| {
-                is_resolved(limits, from, to, LARGEST_GAP) && is_known(from, to)
-            })?;
+            let is_stretched = limits.has_jerk() && entering.laying.leg.tool().is_none();
+            let to = entering.next_knot(
+                |from, to, length| {
+                    if is_stretched {
+                        stretch_evenly(limits, [from, to], length)
+                    } else {
+                        1.0
+                    }
+                },
+                |from, to| is_resolved(limits, from, to, LARGEST_GAP) && is_known(from, to),
+            )?;
             window.push(to);
             if to.ends_leg {
                 let leg = &entering.laying.leg;

@@ -9,7 +9,7 @@ use core::fmt::Debug;
 use machines::{attack_arm, attack_delta, attack_platform, attack_points};
 use path_timing::{
     Accuracy, Axes, AxisLimits, Corner, Curve, FeedCeiling, Knot, LookAhead, Path, PlanError, Row,
-    Span, Table,
+    Span, Table, segments_within,
 };
 use test_support::{Random, setting};
 
@@ -168,9 +168,15 @@ fn attack<P>(
         }
     }
     let max_feed = if has_jerk { 1.0 } else { MAX_FEED };
-    stream(random, paths, limits, segments, max_feed, tried);
+    stream(random, paths, limits, |_| Ok(segments), max_feed, tried);
     if random.below(4) == 0 {
         depart(random, paths, limits, judge, tried);
+    }
+    if random.below(4) == 0 {
+        let allowed = judge.size * random.size(-4.0, -1.0);
+        let segments = |path: &P| segments_within(path, 2, allowed, judge.bound);
+        let rows = stream(random, paths, limits, segments, max_feed, tried);
+        check_departure(paths, &rows, allowed, judge, tried);
     }
 }
 
@@ -199,6 +205,18 @@ fn depart<P>(
     };
     let rows = play(random, &table);
     check(paths, &limits, &rows, "within a departure");
+    check_departure(paths, &rows, accuracy.max_departure, judge, tried);
+    tried.rows += rows.len();
+}
+
+/// All rows keep within a departure.
+fn check_departure<P: Path>(
+    paths: &[P],
+    rows: &[Row<P::Axes>],
+    allowed: f64,
+    judge: &Judge<'_, P, P::Axes>,
+    tried: &mut Tried,
+) {
     for pair in rows.windows(2) {
         let [from, to] = pair else { unreachable!() };
         if from.position == to.position {
@@ -206,6 +224,17 @@ fn depart<P>(
         }
         let start = if from.leg == to.leg { from.s } else { 0.0 };
         let path = &paths[to.leg];
+        let span = Span {
+            s: [start, to.s],
+            rows: [*from, *to],
+        };
+        // A window of four or five knots may rest at one after the other.
+        let rests = from.is_at_rest() && to.is_at_rest();
+        let bound = (judge.bound)(path, &span);
+        assert!(
+            rests || bound <= allowed * ROUNDING,
+            "{bound}, allowed {allowed}: {span:?}"
+        );
         for place in 0..=PLACES {
             let tau = f64::from(place) / f64::from(PLACES);
             let mut at = from.position;
@@ -219,17 +248,12 @@ fn depart<P>(
                     - m1 * tau * tau * rest;
             }
             let off = (judge.off)(path, [start, to.s], &at);
-            tried.farthest = tried.farthest.max(off / accuracy.max_departure);
-            let most = accuracy.max_departure * ROUNDING + judge.size * POSITION;
-            assert!(
-                off <= most,
-                "{off} off, allowed {}: {from:?} {to:?}",
-                accuracy.max_departure
-            );
+            tried.farthest = tried.farthest.max(off / allowed);
+            let most = allowed * ROUNDING + judge.size * POSITION;
+            assert!(off <= most, "{off} off, allowed {allowed}: {from:?} {to:?}");
         }
     }
     tried.departures += 1;
-    tried.rows += rows.len();
 }
 
 /// The distance of a point from a part of a curve.
@@ -274,14 +298,15 @@ fn stream<P>(
     random: &mut Random,
     paths: &[P],
     limits: <P::Axes as Axes>::Of<AxisLimits>,
-    segments: u32,
+    segments: impl FnMut(&P) -> Result<u32, PlanError<P::Error>>,
     max_feed: f64,
     tried: &mut Tried,
-) where
+) -> Vec<Row<P::Axes>>
+where
     P: Path<Error: Debug + Clone> + Clone,
 {
     let mut window = vec![Knot::default(); usize::try_from(4 + random.below(100)).unwrap()];
-    let motion = LookAhead::new(paths.iter().cloned(), limits, |_| Ok(segments), &mut window);
+    let motion = LookAhead::new(paths.iter().cloned(), limits, segments, &mut window);
     let mut motion = motion.unwrap().with_max_feed(max_feed).unwrap();
     let mut rows = Vec::new();
     let mut wishes = random.below(6);
@@ -309,6 +334,7 @@ fn stream<P>(
     assert!(motion.is_at_rest());
     tried.streams += 1;
     tried.rows += rows.len();
+    rows
 }
 
 #[test]
