@@ -19,7 +19,7 @@
 //! q‴ w³, however short they are, even where the parameter's would make up for it. Parabolas have
 //! none, and the steps have all of it.
 
-use crate::number::larger;
+use crate::number::{larger, smaller};
 use crate::reciprocals::Reciprocals;
 use crate::{Axes, Knot, PathPoint};
 
@@ -87,7 +87,8 @@ pub(crate) fn most_evenly<A: Axes>([from, to]: [&PathPoint<A>; 2], length: f64) 
         .zip(slopes)
         .map(|((q0, q1), (p0, p1))| 2.0 * (q1 - q0) / ((p0 + p1) * length));
     // Not a number where an axis rests, which asks for nothing.
-    asked.fold(1.0, f64::max).min(LARGEST_EVENLY)
+    let most = asked.fold(1.0, |most, asked| larger(asked, most));
+    smaller(most, LARGEST_EVENLY)
 }
 
 /// The stretch of a segment that is planned without; 1 with limits of a tool, as laid.

@@ -133,16 +133,19 @@ impl<P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P::Er
         }
         // A path that is refused is so when it begins: until then the machine is to rest before it.
         let next = self.following.as_ref();
-        let junction = || junction_to(&leg, next, limits).ok();
+        let corner = leg.path().corner();
+        // Whether a jump is a slow one, two more places of the paths would tell.
+        let is_asked = segments == 1 || matches!(corner, Corner::Smooth);
+        let after = is_asked
+            .then(|| junction_to(&leg, next, limits).ok())
+            .flatten();
         let is_slow = |junction: Junction<P::Axes>| junction.cap().is_finite();
-        let ends_slowly = match leg.path().corner() {
-            Corner::Smooth => junction().is_some_and(is_slow),
-            // Whether a jump is a slow one, two more places of the paths would tell.
-            Corner::Stop | Corner::Jump(_) => true,
-        };
+        let ends_slowly = !matches!(corner, Corner::Smooth) || after.is_some_and(is_slow);
         let fewest = if segments == 1 {
-            let after = junction().unwrap_or(Junction::Stop);
-            let after = (after, next.map_or(0.0, Path::length));
+            let after = (
+                after.unwrap_or(Junction::Stop),
+                next.map_or(0.0, Path::length),
+            );
             fewest(limits, &leg, &start, [&before, &after])
         } else {
             1
