@@ -153,8 +153,8 @@ impl<P: Path> Place<'_, P> {
         Ok(())
     }
 
-    /// Lays the knots where the motion is slow, none stretched: for limits of jerk and torque, for
-    /// tools, few segments, and plans in single precision, which are to be small.
+    /// Lays the knots where the motion is slow, none stretched: for limits of torque, for tools, few
+    /// segments, and plans in single precision, which are to be small.
     pub(crate) fn lay_plainly<R: Real>(
         &self,
         limits: &Reciprocals<P::Axes, R>,
@@ -165,6 +165,8 @@ impl<P: Path> Place<'_, P> {
         self.lay_by_time(limits, segments, bent, knots, |_, _, _| 1.0)
     }
 
+    /// Lays the knots where the motion is slow, each segment stretched by a factor of the points at
+    /// its ends, its length and the speeds of a plan without a limit of jerk.
     fn lay_by_time<R: Real>(
         &self,
         limits: &Reciprocals<P::Axes, R>,

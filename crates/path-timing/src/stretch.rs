@@ -68,8 +68,8 @@ pub(crate) fn stretch<A: Axes>(
 const LARGEST_EVENLY: f64 = 1.01;
 
 /// The stretch of a segment of a stream with a limit of jerk, whose speeds are not known: as if they
-/// were even. It is not below 1, where a segment that begins or ends at rest departs from its path by
-/// the more the more it is stretched.
+/// were even, and 1 or more. The more it is, the more a segment that begins or ends at rest departs
+/// from its path.
 pub(crate) fn stretch_evenly<A: Axes>(
     limits: &Reciprocals<A>,
     ends: [&PathPoint<A>; 2],

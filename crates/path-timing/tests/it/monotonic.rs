@@ -103,6 +103,29 @@ fn short_rows_lose_nothing_where_corners_overlap() {
     assert!(many_s < few_s * SLOWER, "{many_s} s, not {few_s} s");
 }
 
+/// The time around a corner that bends so sharply that its own jerk, which the parameter's makes up
+/// for, would be all of the limit inside of the cubics: then it was 0.709 s.
+const BENT_S: f64 = 0.685;
+
+#[test]
+fn a_bend_uses_up_no_jerk() {
+    let points = [
+        [0.0, 0.0],
+        [36.169_158_188_501_825, 0.0],
+        [0.0, 70.527_238_171_810_48],
+    ];
+    let curves = smoothed(&points, 0.549_317_519_938_579_6);
+    let own = limits(
+        270.424_399_117_266_3,
+        4_946.433_858_118_036,
+        Some(49_464.338_581_180_36),
+    );
+    for segments in [32, 256] {
+        let time_s = time_s(&curves, own, segments).unwrap();
+        assert!(time_s < BENT_S, "{segments}: {time_s}");
+    }
+}
+
 /// Segments from which on twice as many are not slower.
 const STEADY: [u32; 3] = [32, 48, 64];
 
