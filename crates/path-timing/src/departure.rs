@@ -67,12 +67,15 @@ pub fn segments_within<P: Path>(
         let mut bound = Bound::new(allowed);
         let mut from = Knot::start(start);
         while !from.ends_leg && !bound.is_far() {
-            let stretch = |from: &_, to: &_, length| most_evenly([from, to], length);
-            let to = match cutting.next_knot(stretch, |_, _| true) {
+            let to = match cutting.next_knot(|_, _, _| 1.0, |_, _| true) {
                 Err(PlanError::TooCoarse { .. }) => return Ok(f64::INFINITY),
                 to => to?,
             };
-            bound.add_any([&from, &to], to.ends_leg, |span| departure(path, span));
+            // What a path refuses without a stretch it refuses with one: a stream has no fewer knots.
+            let ds = to.ds * most_evenly([&from.point, &to.point], to.ds);
+            let stretched = Knot { ds, ..to };
+            let departure = |span: &Span<P::Axes>| departure(path, span);
+            bound.add_any([&from, &stretched], to.ends_leg, departure);
             from = to;
         }
         Ok(bound.worst)
