@@ -16,6 +16,9 @@ use crate::{Axes, Knot, Path, PlanError, Span};
 /// Segments beyond which rounding is all that is left of a departure.
 const FINEST: u32 = 1 << 20;
 
+/// Whether the machine is slow at the ends of a path.
+const CORNERS: [[bool; 2]; 4] = [[true, true], [false, false], [true, false], [false, true]];
+
 /// Ratios w₀ T / Δs of a segment that may begin and end at rest: with T = 2Δs / (w₀ + w₁) they
 /// are 0..=2.
 const ANY: [f64; 5] = [0.0, 0.5, 1.0, 1.5, 2.0];
@@ -80,15 +83,22 @@ pub fn segments_within<P: Path>(
         }
         Ok(bound.worst)
     };
-    let mut most = at_least;
-    for rests in [[true, true], [false, false], [true, false], [false, true]] {
+    let (mut most, mut kept) = (at_least, 0_usize);
+    for rests in CORNERS.iter().cycle() {
         let found = search([most, FINEST], allowed, |segments| {
-            bound_of(segments, rests)
+            bound_of(segments, *rests)
         })?;
         let (leg, max) = (0, FINEST);
-        most = found.map_err(|_| PlanError::TooFine { leg, max })?;
-        // Its knots are the ends, with any corners.
-        if most == 1 {
+        let enough = found.map_err(|_| PlanError::TooFine { leg, max })?;
+        // More segments may be too few where fewer were enough.
+        kept = if enough == most {
+            kept.saturating_add(1)
+        } else {
+            1
+        };
+        most = enough;
+        // On one segment the knots are the ends, with any corners.
+        if most == 1 || kept == CORNERS.len() {
             break;
         }
     }

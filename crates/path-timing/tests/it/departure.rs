@@ -3,7 +3,8 @@
 use core::f64::consts::PI;
 
 use path_timing::{
-    AxisLimits, Cubic, Curve, FeedCeiling, Knot, LookAhead, PlanError, Row, Table, segments_within,
+    AxisLimits, Cubic, Curve, FeedCeiling, Knot, LookAhead, PlanError, Row, Span, Table,
+    segments_within,
 };
 use proptest::prelude::*;
 
@@ -147,6 +148,36 @@ fn a_stream_keeps_its_departure_at_any_feed() {
         worst <= TOLERANCE + ROUNDING && worst > TOLERANCE / 20.0,
         "{worst}"
     );
+}
+
+/// A departure that more segments do not always make smaller: what is enough for some corners at the
+/// ends, and too few for others, need not be kept with what is enough for those.
+#[test]
+fn segments_keep_a_departure_that_falls_unevenly() {
+    let line = Curve::line([0.0; 2], [100.0, 0.0]).unwrap();
+    let (allowed, limits) = (8.0, [limits(200.0, 2000.0, None); 2]);
+    for phase in 0..200 {
+        let departure = |_: &Curve<2>, span: &Span<[f64; 2]>| {
+            let [from, to] = span.s;
+            (to - from) * (1.0 + 0.9 * ((from + to) * 7.0 + f64::from(phase)).sin())
+        };
+        let segments = |line: &Curve<2>| segments_within(line, 2, allowed, departure);
+        let mut window = [Knot::default(); 100];
+        let mut motion = LookAhead::new([line], limits, segments, &mut window).unwrap();
+        let mut from = 0.0;
+        for row in motion.by_ref().map(Result::unwrap).skip(1) {
+            let to = row.s;
+            let span = Span {
+                s: [from, to],
+                rows: [row; 2],
+            };
+            assert!(
+                departure(&line, &span) <= allowed,
+                "{phase}: {from} to {to}"
+            );
+            from = to;
+        }
+    }
 }
 
 #[test]
