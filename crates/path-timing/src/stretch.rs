@@ -44,11 +44,11 @@ pub(crate) fn stretch<A: Axes>(
     let (mut own, mut square) = (0.0, 0.0);
     for (limit, ((q0, q1), (p0, p1))) in limits.axes().iter().zip(positions.zip(slopes)) {
         let (v0, v1) = (p0 * w0, p1 * w1);
-        let acceleration = (v1 - v0).abs() * rate * limit.acceleration;
-        let used = acceleration.max(v0.abs().max(v1.abs()) * limit.speed);
         let weight = if limits.has_jerk() {
             limit.jerk
         } else {
+            let acceleration = (v1 - v0).abs() * rate * limit.acceleration;
+            let used = acceleration.max(v0.abs().max(v1.abs()) * limit.speed);
             used * used * limit.acceleration
         };
         let mean = weight * (v0 + v1);
