@@ -2,12 +2,13 @@
 //!
 //! Goal: from one feed to another, or to rest, along speeds that keep all limits at a constant
 //! feed. Method: a lower feed and a stop by three phases of constant jerk at the limits that the
-//! axes have where they begin; else, and to a higher feed, shapes of a change over 1, 2, 3, 5, 8 ..
-//! segments, each tried on the cubics that would run; the shortest that keeps all limits is taken.
-//! Where none is found, or one that begins a few rows later ends sooner, it is tried again a row
-//! later.
+//! axes have where they begin; what brakes already goes on as it began. Else, and to a higher feed,
+//! shapes of a change over 1, 2, 3, 5, 8 .. segments, each tried on the cubics that would run; the
+//! shortest that keeps all limits is taken. Where none is found, or one that begins a few rows later
+//! ends sooner, it is tried again a row later.
 
 mod braking;
+mod change;
 mod course;
 mod ramped;
 
@@ -16,6 +17,7 @@ pub(crate) use course::{At, Course};
 use crate::Axes;
 use crate::jerk::{Most, Walk};
 use braking::{Braking, KAPPAS, State, TAIL, TAILS, TAILS_OF_STOPS};
+use change::{Change, Kind};
 use ramped::FeedChange;
 
 /// The feed, and the change that goes on where it is not yet the wanted one. One that has ended
@@ -24,37 +26,6 @@ use ramped::FeedChange;
 pub(crate) struct SmoothFeed {
     feed: f64,
     change: Option<Change>,
-}
-
-/// How the machine goes from one speed to another.
-#[derive(Debug, Clone, Copy)]
-struct Change {
-    kind: Kind,
-    /// The feed that it ends with.
-    to: f64,
-    /// Segments to go.
-    left: usize,
-}
-
-#[derive(Debug, Clone, Copy)]
-enum Kind {
-    Feed(FeedChange),
-    Braking(Braking),
-}
-
-impl Change {
-    /// The speed at the next knot, over a segment that takes `table_s` to the speed `planned` at a
-    /// feed of 1.
-    fn step(&mut self, ds: f64, table_s: f64, planned: f64) -> f64 {
-        self.left = self.left.saturating_sub(1);
-        if self.left == 0 {
-            return self.to * planned;
-        }
-        match &mut self.kind {
-            Kind::Feed(change) => change.step(table_s) * planned,
-            Kind::Braking(braking) => braking.step(ds),
-        }
-    }
 }
 
 /// What became of a trial.
@@ -142,7 +113,9 @@ impl SmoothFeed {
         if feed <= 0.0 {
             course.resume(at, wanted)
         } else if wanted < feed {
-            course.brake_soonest(at, &course.ahead(at, feed, self.change), [feed, wanted])
+            let ahead = course.ahead(at, feed, self.change);
+            let going = self.change.as_ref().and_then(Change::braking);
+            course.brake_soonest(at, &ahead, going, [feed, wanted])
         } else {
             course.change_to(at, feed, wanted)
         }
@@ -199,16 +172,33 @@ impl<A: Axes> Course<'_, A> {
 
     /// The lower feed or the stop that begins here, unless one that begins a few rows later ends
     /// sooner: where the table uses all of the jerk, a change has to wait.
-    fn brake_soonest(&self, at: At, ahead: &[f64; AHEAD], [from, to]: [f64; 2]) -> Option<Change> {
-        // One found by its length takes long to find, and longer to run.
-        unless_later(at, ahead, |at| self.brake_at_limits(at, to))
+    fn brake_soonest(
+        &self,
+        at: At,
+        ahead: &[f64; AHEAD],
+        going: Option<&Braking>,
+        [from, to]: [f64; 2],
+    ) -> Option<Change> {
+        // What brakes already goes on as it began. One found by its length takes long to find, and
+        // longer to run.
+        going
+            .and_then(|going| self.brake_at_limits(at, &[going.begun()], to))
+            .map(Some)
+            .or_else(|| unless_later(at, ahead, |at| self.brake_from(at, to)))
             .or_else(|| unless_later(at, ahead, |at| self.change_to(at, from, to)))
             .flatten()
     }
 
-    /// The change to a lower feed, or to rest, that uses most of the limits that the axes have
-    /// where it begins.
-    fn brake_at_limits(&self, at: At, to: f64) -> Option<Change> {
+    /// The change to a lower feed, or to rest, that begins here.
+    fn brake_from(&self, at: At, to: f64) -> Option<Change> {
+        // What the segment before has in its middle, and what the table has at the knot.
+        let starts = [self.state(at), self.state_between(at)];
+        self.brake_at_limits(at, &starts.map(|start| (start, 0.0)), to)
+    }
+
+    /// The same that began at one of these, so far ago, and uses most of the limits that the axes
+    /// have here.
+    fn brake_at_limits(&self, at: At, starts: &[(State, f64)], to: f64) -> Option<Change> {
         let slope = self.knots.get(at.index)?.point.slope;
         let ahead = self.knots.get(at.index.saturating_add(1))?;
         let axes = self.limits.axes().iter().zip(slope.as_slice());
@@ -221,8 +211,6 @@ impl<A: Axes> Course<'_, A> {
                 jerk.max(slope * limits.jerk),
             ]
         });
-        // What the segment before has in its middle, and what the table has at the knot.
-        let starts = [self.state(at), self.state_between(at)];
         let tails = if to > 0.0 {
             &TAILS[..]
         } else {
@@ -239,16 +227,16 @@ impl<A: Axes> Course<'_, A> {
     }
 
     /// What ends at the first knot by which braking within a deceleration and a jerk has come to a
-    /// feed.
+    /// feed, from where it began so far ago.
     fn braking(
         &self,
         at: At,
-        start: State,
+        (start, reached): (State, f64),
         [to, tail]: [f64; 2],
         limits: [f64; 2],
     ) -> Option<Change> {
         let to_rest = Braking::quickest([start, State::REST], limits);
-        let (mut left, mut length) = (0_usize, 0.0);
+        let (mut left, mut length) = (0_usize, reached);
         let ahead = self.knots.iter().enumerate();
         for (index, knot) in ahead.skip(at.index.saturating_add(1)) {
             left = left.saturating_add(usize::from(knot.ds > 0.0));
@@ -264,7 +252,7 @@ impl<A: Axes> Course<'_, A> {
             let taken = length - knot.ds * tail;
             if taken >= wanted {
                 let braking = Braking::new([start, end], taken, kappa)?;
-                let kind = Kind::Braking(braking);
+                let kind = Kind::Braking(braking.having_reached(reached));
                 return Some(Change { kind, to, left });
             }
             // There the course rests itself.

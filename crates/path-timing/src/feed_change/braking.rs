@@ -128,6 +128,16 @@ impl Braking {
         [kappa, Self::with_jerk([start, end], jerk, kappa).end()]
     }
 
+    /// Where it began, and how far it has come since.
+    pub(super) const fn begun(&self) -> (State, f64) {
+        (self.start, self.reached)
+    }
+
+    /// The same with a length that it has come already.
+    pub(super) const fn having_reached(self, reached: f64) -> Self {
+        Self { reached, ..self }
+    }
+
     fn with_jerk([start, end]: [State; 2], jerk: f64, kappa: f64) -> Self {
         let less = start.speed - end.speed;
         let squares = State::squares(start, end);
