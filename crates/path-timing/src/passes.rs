@@ -57,6 +57,24 @@ fn forward<A: Axes, R: Real>(limits: &Reciprocals<A, R>, knots: &mut [Knot<A>]) 
     }
 }
 
+/// The highest speed with which a segment is passed evenly: with no more than the acceleration that
+/// its bend asks of the axes.
+///
+/// ```text
+/// w² |Δp| / Δs ≤ a
+/// ```
+pub(crate) fn evenly<A: Axes, R: Real>(
+    limits: &Reciprocals<A, R>,
+    [from, to]: [&Knot<A>; 2],
+) -> f64 {
+    let slopes = (from.point.slope.as_slice().iter()).zip(to.point.slope.as_slice());
+    let bends = (limits.axes().iter().zip(slopes)).map(|(limit, (p0, p1))| {
+        let acceleration: f64 = limit.acceleration.into();
+        (p1 - p0).abs() * acceleration
+    });
+    sqrt(to.ds / bends.fold(0.0, f64::max))
+}
+
 /// The time of the segment between two knots: its speed is linear in time.
 pub(crate) fn segment_s<A: Axes>(from: &Knot<A>, to: &Knot<A>) -> f64 {
     time_of(to.ds, [from.speed, to.speed])

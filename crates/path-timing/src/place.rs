@@ -166,7 +166,8 @@ impl<P: Path> Place<'_, P> {
     }
 
     /// Lays the knots where the motion is slow, each segment stretched by a factor of the points at
-    /// its ends, its length and the speeds of a plan without a limit of jerk.
+    /// its ends, its length and the speeds of a plan that takes jerk into account by the mean of its
+    /// ramps alone.
     fn lay_by_time<R: Real>(
         &self,
         limits: &Reciprocals<P::Axes, R>,
@@ -176,7 +177,7 @@ impl<P: Path> Place<'_, P> {
         stretch: impl Fn([&PathPoint<P::Axes>; 2], f64, [f64; 2]) -> f64,
     ) -> Result<u32, PlanError<P::Error>> {
         let own = self.room(segments, knots)?;
-        let planned = self.lay_roughly(limits, own)?;
+        let planned = self.lay_roughly(&limits.ramped(), own)?;
         spread(BY_TIME.bent(bent), own, planned);
         self.lay_checked(limits, segments, knots, stretch)
     }
@@ -321,18 +322,19 @@ impl<P: Path> Place<'_, P> {
         Ok(())
     }
 
-    /// Plans the leg for itself.
+    /// Plans the leg for itself, evenly from and to what goes on smoothly: what comes from elsewhere
+    /// as fast as this leg alone can brake from, brakes there already.
     fn alone<R: Real>(&self, limits: &Reciprocals<P::Axes, R>, knots: &mut [Knot<P::Axes>]) {
         let before = knots.first().copied();
         let [start, end] = self.caps;
         if let Some(first) = knots.first_mut() {
-            *first = Knot {
-                cap: start,
-                ..Knot::start(self.start)
-            };
+            *first = Knot::start(self.start);
         }
-        if let Some(last) = knots.last_mut() {
-            last.cap = end;
+        if let [first, second, ..] = knots {
+            first.cap = start.min(passes::evenly(limits, [first, second]));
+        }
+        if let [.., earlier, last] = knots {
+            last.cap = end.min(passes::evenly(limits, [earlier, last]));
         }
         passes::fastest(limits, knots);
         if let (Some(first), Some(before)) = (knots.first_mut(), before) {

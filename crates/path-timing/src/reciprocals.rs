@@ -51,6 +51,24 @@ impl<A: Axes, R: Real> Reciprocals<A, R> {
         }
     }
 
+    /// With the mean acceleration from rest to the limit of speed in place of the limits of
+    /// acceleration and jerk, for plans that know of no jerk.
+    ///
+    /// ```text
+    /// v / (v/a + a/J)     with √(v J) for an a above it
+    /// ```
+    pub(crate) fn ramped(&self) -> Self {
+        let mut ramped = *self;
+        for limits in A::each_mut(&mut ramped.axes) {
+            if limits.jerk > R::ZERO {
+                let square = limits.speed * limits.jerk;
+                let reached = limits.acceleration.max(square.sqrt());
+                limits.acceleration = reached + square / reached;
+            }
+        }
+        ramped
+    }
+
     /// Those of each axis.
     pub(crate) fn axes(&self) -> &[Reciprocal<R>] {
         A::each(&self.axes)

@@ -103,6 +103,49 @@ fn short_rows_lose_nothing_where_corners_overlap() {
     assert!(many_s < few_s * SLOWER, "{many_s} s, not {few_s} s");
 }
 
+/// A leg that turns round with another, whose plan for itself was to begin faster than the one before
+/// may end: what its segments were stretched by for that cost 7 % from 96 of them on.
+#[test]
+fn more_segments_of_two_curves_that_turn_round_take_no_longer() {
+    let points = [
+        [28.078708928812663, 32.30835402328227],
+        [39.34838040309374, 38.5073876304579],
+        [-81.14579207450105, 0.0],
+    ];
+    let curves = smoothed(&points, 1.30023688160193);
+    let own = limits(
+        412.9365340394341,
+        2518.7876100976164,
+        Some(25187.876100976164),
+    );
+    let few_s = time_s(&curves, own, 16).unwrap();
+    for segments in [32, 64, 96, 128, 256, 512] {
+        let many_s = time_s(&curves, own, segments).unwrap();
+        assert!(
+            many_s < few_s * SLOWER,
+            "{many_s} s by {segments}, not {few_s} s"
+        );
+    }
+}
+
+/// Three hairpins whose ways are too short for the accelerations at their jerk: what segments were
+/// stretched by for a plan with all of the acceleration cost 3 % with 2.5 times as much.
+#[test]
+fn an_acceleration_that_is_not_reached_takes_no_longer() {
+    let points = [
+        [78.8068464647553, 5.42411776991525],
+        [69.48283837492205, -64.63005065804644],
+        [58.14925390689331, 51.374833549913845],
+        [41.87918575100103, -90.56798394158942],
+    ];
+    let curves = smoothed(&points, 1.374);
+    let [own_s, higher_s] = [4967.8, 12_210.9].map(|acceleration| {
+        let limits = limits(154.6, acceleration, Some(53_900.0));
+        time_s(&curves, limits, 29).unwrap()
+    });
+    assert!(higher_s < own_s * SLOWER, "{higher_s} s, not {own_s} s");
+}
+
 /// The time around a corner that bends so sharply that its own jerk, which the parameter's makes up
 /// for, would be all of the limit inside of the cubics: then it was 0.709 s.
 const BENT_S: f64 = 0.685;
