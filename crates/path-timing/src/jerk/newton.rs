@@ -321,7 +321,11 @@ fn solve<A: Axes>(knots: &mut [Knot<A>], range: &Range<usize>) -> f64 {
         let pivot = whole
             - one.next[0] * one.next[0] * one.diagonal
             - two.next[1] * two.next[1] * two.diagonal;
-        equation.diagonal = pivot.max(whole * LEAST_PIVOT);
+        equation.diagonal = if pivot > whole * LEAST_PIVOT {
+            pivot
+        } else {
+            whole
+        };
         let beside = beside - one.next[0] * one.next[1] * one.diagonal;
         equation.next = [beside, after].map(|entry| entry / equation.diagonal);
         equation.right -= one.next[0] * one.right + two.next[1] * two.right;
@@ -344,5 +348,6 @@ fn solve<A: Axes>(knots: &mut [Knot<A>], range: &Range<usize>) -> f64 {
 /// A diagonal that leaves nothing of the coupling to a knot.
 const STIFF: f64 = 1e150;
 
-/// Least pivot, as a part of the diagonal: what rounding leaves of one.
-const LEAST_PIVOT: f64 = 1e-14;
+/// Least pivot, as a part of the diagonal: of one that is smaller rounding leaves nothing, and
+/// divided by it the next ones would grow beyond all numbers. There the step is shorter.
+const LEAST_PIVOT: f64 = 1e-12;

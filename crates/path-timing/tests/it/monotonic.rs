@@ -146,6 +146,33 @@ fn an_acceleration_that_is_not_reached_takes_no_longer() {
     assert!(higher_s < own_s * SLOWER, "{higher_s} s, not {own_s} s");
 }
 
+/// By what rows of a microsecond may be slower: rounding takes a part of the limits there.
+const SLOWER_BY_ROUNDING: f64 = 1.05;
+
+/// A line of 0.018 mm between two corners, in hundreds of segments, was the end of all speeds: what
+/// rounding had left of a pivot made steps that were no numbers, and the search ended at 1.9 times
+/// the time.
+#[test]
+fn many_segments_of_a_short_line_take_little_longer() {
+    let points = [
+        [-54.11037813060624, -8.441223435043835],
+        [-39.741681169455006, 76.24639849231764],
+        [-67.87462186711517, -17.164677238235043],
+        [-56.16927690665478, -26.989630107658147],
+        [3.4437975307116573, 69.81646313114103],
+    ];
+    let curves = smoothed(&points, 1.6564415803177879);
+    let own = limits(437.34545906576654, 3783.720106023696, Some(68_138.0));
+    let few_s = time_s(&curves, own, 64).unwrap();
+    for segments in [128, 160, 256, 384] {
+        let many_s = time_s(&curves, own, segments).unwrap();
+        assert!(
+            many_s < few_s * SLOWER_BY_ROUNDING,
+            "{many_s} s, not {few_s} s"
+        );
+    }
+}
+
 /// The time around a corner that bends so sharply that its own jerk, which the parameter's makes up
 /// for, would be all of the limit inside of the cubics: then it was 0.709 s.
 const BENT_S: f64 = 0.685;
