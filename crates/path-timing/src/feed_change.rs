@@ -217,11 +217,16 @@ impl<A: Axes> Course<'_, A> {
             &TAILS_OF_STOPS
         };
         OF_LIMITS.iter().find_map(|part| {
-            let limits = inverse.map(|inverse| part / inverse);
-            let shapes =
-                (starts.iter()).flat_map(|start| tails.iter().map(move |tail| (*start, *tail)));
+            let limits @ [_, jerk] = inverse.map(|inverse| part / inverse);
+            // What gains its highest speed first needs all of the jerk for that.
+            let shapes = [None, Some(jerk)].into_iter().flat_map(|first| {
+                (starts.iter())
+                    .flat_map(move |start| tails.iter().map(move |tail| (first, *start, *tail)))
+            });
             shapes
-                .filter_map(|(start, tail)| self.braking(at, start, [to, tail], limits))
+                .filter_map(|(first, start, tail)| {
+                    self.braking(at, start, [to, tail], limits, first)
+                })
                 .find(|change| self.holds(at, *change))
         })
     }
@@ -234,6 +239,7 @@ impl<A: Axes> Course<'_, A> {
         (start, reached): (State, f64),
         [to, tail]: [f64; 2],
         limits: [f64; 2],
+        first: Option<f64>,
     ) -> Option<Change> {
         let to_rest = Braking::quickest([start, State::REST], limits);
         let (mut left, mut length) = (0_usize, reached);
@@ -251,7 +257,7 @@ impl<A: Axes> Course<'_, A> {
             };
             let taken = length - knot.ds * tail;
             if taken >= wanted {
-                let braking = Braking::new([start, end], taken, kappa)?;
+                let braking = Braking::new([start, end], taken, kappa, first)?;
                 let kind = Kind::Braking(braking.having_reached(reached));
                 return Some(Change { kind, to, left });
             }
@@ -301,7 +307,7 @@ impl<A: Axes> Course<'_, A> {
         let is_braking = to < from && (to <= 0.0 || self.planned(index) > 0.0);
         let kappas = KAPPAS.iter().filter(|_| is_braking);
         let braking = kappas.filter_map(|kappa| {
-            Braking::new(states, length - last * tail, *kappa).map(Kind::Braking)
+            Braking::new(states, length - last * tail, *kappa, None).map(Kind::Braking)
         });
         let changes = FeedChange::over(table_s, [from, to]).map(Kind::Feed);
         let changes = braking.chain(changes).map(|kind| Change {

@@ -9,6 +9,12 @@ use crate::number::sqrt;
 /// ```text
 /// A = κ √(J (v₀ - v₁) + (a₀² + a₁²)/2)        κ = 1: it does not stay
 /// ```
+///
+/// and with a jerk J₀ of its own in the first phase, with which the speed that is gained is less
+///
+/// ```text
+/// A = κ √((v₀ - v₁ + a₀²/2J₀ + a₁²/2J) / (1/2J₀ + 1/2J))
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Braking {
     /// Duration and jerk.
@@ -81,9 +87,15 @@ const FACTOR: f64 = 4.0;
 pub(super) const KAPPAS: [f64; 6] = [0.15, 0.25, 0.4, 0.6, 0.8, 1.0];
 
 impl Braking {
-    /// What takes a length; none where no jerk does. Beyond, it goes on at its last speed.
-    pub(super) fn new([start, end]: [State; 2], length: f64, kappa: f64) -> Option<Self> {
-        let with = |jerk: f64| Self::with_jerk([start, end], jerk, kappa);
+    /// What takes a length, with the jerk `first` in its first phase or with the same in all; none
+    /// where no jerk does. Beyond, it goes on at its last speed.
+    pub(super) fn new(
+        [start, end]: [State; 2],
+        length: f64,
+        kappa: f64,
+        first: Option<f64>,
+    ) -> Option<Self> {
+        let with = |jerk: f64| Self::with_jerks([start, end], [first.unwrap_or(jerk), jerk], kappa);
         // It would take this length if the speed fell evenly, and would do so in this time.
         let time = 2.0 * length / (start.speed + end.speed);
         let less = start.speed - end.speed;
@@ -125,7 +137,10 @@ impl Braking {
     pub(super) fn quickest([start, end]: [State; 2], [deceleration, jerk]: [f64; 2]) -> [f64; 2] {
         let most = sqrt(jerk * (start.speed - end.speed) + State::squares(start, end));
         let kappa = (deceleration / most).min(1.0);
-        [kappa, Self::with_jerk([start, end], jerk, kappa).end()]
+        [
+            kappa,
+            Self::with_jerks([start, end], [jerk; 2], kappa).end(),
+        ]
     }
 
     /// Where it began, and how far it has come since.
@@ -138,17 +153,21 @@ impl Braking {
         Self { reached, ..self }
     }
 
-    fn with_jerk([start, end]: [State; 2], jerk: f64, kappa: f64) -> Self {
-        let less = start.speed - end.speed;
-        let squares = State::squares(start, end);
-        let hardest = kappa * sqrt(jerk * less + squares);
+    fn with_jerks([start, end]: [State; 2], jerks: [f64; 2], kappa: f64) -> Self {
+        let [of_first, of_last] = jerks.map(|jerk| 0.5 / jerk);
+        let both = of_first + of_last;
+        let less = start.speed - end.speed
+            + start.acceleration * start.acceleration * of_first
+            + end.acceleration * end.acceleration * of_last;
+        let hardest = kappa * sqrt(less / both);
         let [fall, rise] = [start, end].map(|state| state.acceleration + hardest);
-        let stay = (less + squares / jerk) / hardest - hardest / jerk;
+        let stay = less / hardest - hardest * both;
+        let [first, last] = jerks;
         Self {
             phases: [
-                (fall.abs() / jerk, -jerk.copysign(fall)),
+                (fall.abs() / first, -first.copysign(fall)),
                 (stay.max(0.0), 0.0),
-                (rise.abs() / jerk, jerk.copysign(rise)),
+                (rise.abs() / last, last.copysign(rise)),
             ],
             start,
             lowest: end.speed,
@@ -208,7 +227,7 @@ mod tests {
             acceleration: 1.0,
         };
         for kappa in KAPPAS {
-            let mut stop = Braking::new([start, State::REST], 2.995, kappa).unwrap();
+            let mut stop = Braking::new([start, State::REST], 2.995, kappa, None).unwrap();
             let (mut before, mut steepest) = (2.0_f64, 0.0_f64);
             for number in 1..=300 {
                 let speed = stop.step(0.01);

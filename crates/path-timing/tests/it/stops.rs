@@ -171,3 +171,19 @@ fn a_stop_rests_in_time_while_another_change_goes_on() {
         assert!(worst <= 1.0, "{worst}");
     }
 }
+
+/// While the machine brakes for a lower feed at all of its jerk and gains just its highest speed: a
+/// stop took 4.4 times as long as it may.
+#[test]
+fn a_stop_rests_in_time_where_the_highest_speed_is_gained() {
+    let case = case(415.8, 4099.3, 36_032.8, 853.0, 692);
+    let mut knots = vec![Knot::default(); 4002];
+    let table = case.table(&mut knots);
+    for asked in 45..58 {
+        for later in 1..8 {
+            let rows = driven(&table, &[(asked, 0.5), (asked + later, 0.0)]);
+            let share = case.check(&rows, asked + later);
+            assert!(share <= 1.0, "{share}, {later} rows after {asked}");
+        }
+    }
+}
