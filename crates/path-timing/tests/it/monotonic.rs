@@ -14,12 +14,11 @@ use crate::support::waves::Waves;
 /// By what a motion may be slower, as a part of its time.
 const SLOWER: f64 = 1.01;
 
-/// The same for twice the segments where a row lasts longer than a part of the ramp of an
-/// acceleration at the jerk's limit: a row hides what happens in it.
+/// The same for twice the segments where a row lasts longer than half the ramp of an acceleration
+/// at the jerk's limit: a row hides what happens in it.
 const HIDDEN: f64 = 1.1;
 
-/// With half of it two of 30,000 took 1.01 % and 1.05 % longer.
-const RAMP: f64 = 0.4;
+const RAMP: f64 = 0.5;
 
 /// And no more at a lone corner, for each ramp that the longest row lasts: of 37,500 plans of one
 /// corner and more the most was 0.043.
