@@ -16,7 +16,7 @@ pub(crate) use course::{At, Course};
 
 use crate::Axes;
 use crate::jerk::{Most, Walk};
-use braking::{Braking, KAPPAS, State, TAIL, TAILS, TAILS_OF_STOPS};
+use braking::{Braking, GAINING, KAPPAS, State, TAIL, TAILS, TAILS_OF_STOPS};
 use change::{Change, Kind};
 use ramped::FeedChange;
 
@@ -238,7 +238,7 @@ impl<A: Axes> Course<'_, A> {
         at: At,
         (start, reached): (State, f64),
         [to, tail]: [f64; 2],
-        limits: [f64; 2],
+        limits @ [_, jerk]: [f64; 2],
         first: Option<f64>,
     ) -> Option<Change> {
         let to_rest = Braking::quickest([start, State::REST], limits);
@@ -256,7 +256,13 @@ impl<A: Axes> Course<'_, A> {
                 (false, true) => break,
             };
             let taken = length - knot.ds * tail;
-            if taken >= wanted {
+            let shape = if taken >= wanted {
+                Some(kappa)
+            } else {
+                let is_gaining = taken <= Braking::gaining([start, end], jerk);
+                is_gaining.then_some(GAINING)
+            };
+            if let Some(kappa) = shape {
                 let braking = Braking::new([start, end], taken, kappa, first)?;
                 let kind = Kind::Braking(braking.having_reached(reached));
                 return Some(Change { kind, to, left });

@@ -8,6 +8,7 @@ use crate::number::sqrt;
 ///
 /// ```text
 /// A = κ √(J (v₀ - v₁) + (a₀² + a₁²)/2)        κ = 1: it does not stay
+///                                             κ = -1: nor does it, and A < 0 is no braking
 /// ```
 ///
 /// and with a jerk J₀ of its own in the first phase, with which the speed that is gained is less
@@ -83,6 +84,10 @@ const MOST: f64 = 1.0 - 1e-6;
 /// By how much the jerk is changed to find two that the wanted one lies between.
 const FACTOR: f64 = 4.0;
 
+/// κ where the machine gains speed all the time, and less than it would: a lower feed near to the
+/// one before.
+pub(super) const GAINING: f64 = -1.0;
+
 /// Shapes to be tried, the quickest first.
 pub(super) const KAPPAS: [f64; 6] = [0.15, 0.25, 0.4, 0.6, 0.8, 1.0];
 
@@ -99,29 +104,26 @@ impl Braking {
         // It would take this length if the speed fell evenly, and would do so in this time.
         let time = 2.0 * length / (start.speed + end.speed);
         let less = start.speed - end.speed;
-        // Above, it would not gain the speed at which it is to end.
-        let most = if less < 0.0 {
-            MOST * State::squares(start, end) / -less
-        } else {
-            f64::INFINITY
-        };
+        let most = Self::most_jerk([start, end]);
         let mut high = ((less.abs() + start.acceleration.abs() * time) / (time * time)).min(most);
+        // With more jerk what brakes takes less, and what gains speed at a lower acceleration more.
+        let is_less = |jerk: f64| (with(jerk).end() - length) * kappa > 0.0;
         for _ in 0..ROUNDS {
-            if with(high).end() <= length {
+            if !is_less(high) {
                 break;
             }
             high = (high * FACTOR).min(most);
         }
         let mut low = high;
         for _ in 0..ROUNDS {
-            if with(low).end() >= length {
+            if is_less(low) {
                 break;
             }
             low /= FACTOR;
         }
         for _ in 0..ROUNDS {
             let middle = sqrt(low * high);
-            if with(middle).end() > length {
+            if is_less(middle) {
                 low = middle;
             } else {
                 high = middle;
@@ -132,15 +134,38 @@ impl Braking {
         is_found.then_some(found)
     }
 
-    /// The quickest within a deceleration and a jerk: its κ and the length that it takes, NaN where
-    /// the speed at the start cannot be gained or lost so.
+    /// The jerk above which it would not gain the speed at which it is to end.
+    fn most_jerk([start, end]: [State; 2]) -> f64 {
+        let gain = end.speed - start.speed;
+        if gain > 0.0 {
+            MOST * State::squares(start, end) / gain
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// The quickest within a deceleration and a jerk: its κ and the length that it takes.
     pub(super) fn quickest([start, end]: [State; 2], [deceleration, jerk]: [f64; 2]) -> [f64; 2] {
+        let jerk = jerk.min(Self::most_jerk([start, end]));
         let most = sqrt(jerk * (start.speed - end.speed) + State::squares(start, end));
         let kappa = (deceleration / most).min(1.0);
         [
             kappa,
             Self::with_jerks([start, end], [jerk; 2], kappa).end(),
         ]
+    }
+
+    /// The length that it takes within a jerk where the machine gains speed all the time; NaN where
+    /// its acceleration would not fall first and rise then.
+    pub(super) fn gaining([start, end]: [State; 2], jerk: f64) -> f64 {
+        let jerk = jerk.min(Self::most_jerk([start, end]));
+        let gaining = Self::with_jerks([start, end], [jerk; 2], GAINING);
+        let [(_, fall), _, (_, rise)] = gaining.phases;
+        if fall < 0.0 && rise > 0.0 {
+            gaining.end()
+        } else {
+            f64::NAN
+        }
     }
 
     /// Where it began, and how far it has come since.

@@ -180,25 +180,36 @@ const AMONG_LONG_ROWS: f64 = 1.1;
 /// Rows before which no stop is tried, and before the end.
 const FIRST: u64 = 14;
 
+impl Case {
+    fn random(random: &mut Random) -> Self {
+        let acceleration = random.within(200.0, 5000.0);
+        case(
+            random.within(20.0, 500.0),
+            acceleration,
+            acceleration * random.within(5.0, 100.0),
+            random.within(50.0, 2000.0),
+            u32::try_from(30 + random.below(970)).unwrap(),
+        )
+    }
+
+    /// Of its rows, none of the first and the last ones.
+    fn random_row(&self, random: &mut Random) -> usize {
+        let rows = u64::from(self.segments) - FIRST;
+        usize::try_from(4 + random.below(rows)).unwrap()
+    }
+}
+
 /// On random lines, alone and while a lower feed is on its way.
 #[test]
 fn stops_on_random_lines_rest_in_time() {
     let mut random = Random::new(setting("SEED", 1));
     let mut worst = [0.0_f64; 2];
     for _ in 0..setting("LINES", 30) {
-        let acceleration = random.within(200.0, 5000.0);
-        let case = case(
-            random.within(20.0, 500.0),
-            acceleration,
-            acceleration * random.within(5.0, 100.0),
-            random.within(50.0, 2000.0),
-            u32::try_from(30 + random.below(970)).unwrap(),
-        );
+        let case = Case::random(&mut random);
         let mut knots = vec![Knot::default(); 4002];
         let table = case.table(&mut knots);
         for _ in 0..6 {
-            let rows = u64::from(case.segments) - FIRST;
-            let asked = usize::try_from(4 + random.below(rows)).unwrap();
+            let asked = case.random_row(&mut random);
             let stopped = asked + 1 + usize::try_from(random.below(9)).unwrap();
             let alone = case.check(&driven(&table, &[(asked, 0.0)]), asked);
             let rows = driven(&table, &[(asked, 0.5), (stopped, 0.0)]);
@@ -225,6 +236,56 @@ fn a_stop_rests_in_time_where_the_highest_speed_is_gained() {
             let rows = driven(&table, &[(asked, 0.5), (asked + later, 0.0)]);
             let share = case.check(&rows, asked + later);
             assert!(share <= 1.0, "{share}, {later} rows after {asked}");
+        }
+    }
+}
+
+#[test]
+fn lower_feeds_on_random_lines_are_reached_in_time() {
+    let mut random = Random::new(setting("SEED", 1));
+    let mut worst = 0.0_f64;
+    for _ in 0..setting("LINES", 30) {
+        let case = Case::random(&mut random);
+        let mut knots = vec![Knot::default(); 4002];
+        let table = case.table(&mut knots);
+        let planned: Vec<_> = table.rows().collect();
+        for _ in 0..12 {
+            let asked = case.random_row(&mut random);
+            let feed = random.within(0.05, 0.99);
+            let rows = driven(&table, &[(asked, feed)]);
+            worst = worst.max(case.slowed(&rows, &planned, asked, feed));
+        }
+    }
+    println!("{worst:.3}");
+    assert!(worst <= 1.0, "{worst}");
+}
+
+/// While the machine gains speed, and goes on to: it came up to nine times as late as it may, where
+/// the line ends.
+#[test]
+fn a_lower_feed_near_to_the_one_before_is_reached_in_time() {
+    let cases = [
+        (case(484.3, 1288.0, 85_900.0, 409.7, 707), 0.9141, 40..55),
+        (case(473.5, 911.2, 40_767.1, 95.5, 876), 0.8754, 35..50),
+        (
+            case(406.834, 282.033, 16_452.8, 430.013, 293),
+            0.96815,
+            30..45,
+        ),
+        (
+            case(335.574, 293.93, 18_231.3, 398.815, 235),
+            0.93256,
+            6..21,
+        ),
+        (case(373.161, 221.652, 21_300.4, 256.646, 48), 0.9444, 4..9),
+    ];
+    for (case, feed, rows) in cases {
+        let mut knots = vec![Knot::default(); 4002];
+        let table = case.table(&mut knots);
+        let planned: Vec<_> = table.rows().collect();
+        for asked in rows {
+            let share = case.slowed(&driven(&table, &[(asked, feed)]), &planned, asked, feed);
+            assert!(share <= 1.0, "{:?}: {share} from row {asked}", case.limits);
         }
     }
 }
