@@ -1,23 +1,23 @@
 //! Changes of the feed with limited jerk.
 //!
 //! Goal: from one feed to another, or to rest, along speeds that keep all limits at a constant
-//! feed. Method: a lower feed and a stop by three phases of constant jerk at the limits that the
-//! axes have where they begin; what brakes already goes on as it began. Else, and to a higher feed,
-//! shapes of a change over 1, 2, 3, 5, 8 .. segments, each tried on the cubics that would run; the
-//! shortest that keeps all limits is taken. Where none is found, or one that begins a few rows later
-//! ends sooner, it is tried again a row later.
+//! feed. Method: three phases of constant jerk at the limits that the axes have where they begin;
+//! what brakes already goes on as it began. Else shapes of a change over 1, 2, 3, 5, 8 .. segments,
+//! each tried on the cubics that would run; the shortest that keeps all limits is taken. Where none
+//! is found, or one that begins a few rows later ends sooner, it is tried again a row later.
 
-mod braking;
+mod at_limits;
 mod change;
 mod course;
+mod phases;
 mod ramped;
 
 pub(crate) use course::{At, Course};
 
 use crate::Axes;
 use crate::jerk::{Most, Walk};
-use braking::{Braking, GAINING, KAPPAS, State, TAIL, TAILS, TAILS_OF_STOPS};
 use change::{Change, Kind};
+use phases::{Ends, KAPPAS, Phases, TAIL, Way};
 use ramped::FeedChange;
 
 /// The feed, and the change that goes on where it is not yet the wanted one. One that has ended
@@ -42,10 +42,6 @@ const LATER: [usize; 6] = [1, 2, 3, 5, 8, 13];
 
 /// The speeds that are known for that: those before and after the last segment of the latest.
 const AHEAD: usize = 15;
-
-/// The parts of the axes' limits that braking is tried with. The first that keeps them is the
-/// quickest; of all lengths few do where the machine gains speed, for it has a limit, too.
-const OF_LIMITS: [f64; 8] = [1.0, 0.995, 0.99, 0.98, 0.96, 0.93, 0.9, 0.85];
 
 /// Halvings of a feed that nothing moves at.
 const HALVINGS: u32 = 64;
@@ -117,7 +113,8 @@ impl SmoothFeed {
             let going = self.change.as_ref().and_then(Change::braking);
             course.brake_soonest(at, &ahead, going, [feed, wanted])
         } else {
-            course.change_to(at, feed, wanted)
+            let ahead = course.ahead(at, feed, self.change);
+            course.speed_up(at, &ahead, [feed, wanted])
         }
     }
 }
@@ -176,111 +173,68 @@ impl<A: Axes> Course<'_, A> {
         &self,
         at: At,
         ahead: &[f64; AHEAD],
-        going: Option<&Braking>,
+        going: Option<&Phases>,
         [from, to]: [f64; 2],
     ) -> Option<Change> {
         // What brakes already goes on as it began. One found by its length takes long to find, and
         // longer to run.
         going
-            .and_then(|going| self.brake_at_limits(at, &[going.begun()], to))
+            .and_then(|going| self.change_at_limits(at, &[going.begun()], to, Way::Slower))
             .map(Some)
-            .or_else(|| unless_later(at, ahead, |at| self.brake_from(at, to)))
-            .or_else(|| unless_later(at, ahead, |at| self.change_to(at, from, to)))
+            .or_else(|| soonest(at, ahead, |at| self.change_from(at, to, Way::Slower)))
+            .or_else(|| soonest(at, ahead, |at| self.change_to(at, from, to)))
             .flatten()
     }
 
-    /// The change to a lower feed, or to rest, that begins here.
-    fn brake_from(&self, at: At, to: f64) -> Option<Change> {
-        // What the segment before has in its middle, and what the table has at the knot.
-        let starts = [self.state(at), self.state_between(at)];
-        self.brake_at_limits(at, &starts.map(|start| (start, 0.0)), to)
-    }
-
-    /// The same that began at one of these, so far ago, and uses most of the limits that the axes
-    /// have here.
-    fn brake_at_limits(&self, at: At, starts: &[(State, f64)], to: f64) -> Option<Change> {
-        let slope = self.knots.get(at.index)?.point.slope;
-        let ahead = self.knots.get(at.index.saturating_add(1))?;
-        let axes = self.limits.axes().iter().zip(slope.as_slice());
-        let tool = ahead.tool.times(self.tool_times());
-        let of_tool = [1.0 / tool.acceleration, 0.0];
-        let inverse = axes.fold(of_tool, |[acceleration, jerk], (limits, slope)| {
-            let slope = slope.abs();
-            [
-                acceleration.max(slope * limits.acceleration),
-                jerk.max(slope * limits.jerk),
-            ]
-        });
-        let tails = if to > 0.0 {
-            &TAILS[..]
-        } else {
-            &TAILS_OF_STOPS
+    /// The change to a higher feed that begins here: by phases, or by a shape of the feed if that
+    /// takes less time.
+    fn speed_up(&self, at: At, ahead: &[f64; AHEAD], [from, to]: [f64; 2]) -> Option<Change> {
+        let shape = self.change_to(at, from, to);
+        let by_phases = |at| Some((at, self.change_from(at, to, Way::Faster)?));
+        let phases = by_phases(at).or_else(|| later(at, ahead).find_map(by_phases));
+        let Some((begun, phases)) = phases else {
+            return shape;
         };
-        OF_LIMITS.iter().find_map(|part| {
-            let limits @ [_, jerk] = inverse.map(|inverse| part / inverse);
-            // What gains its highest speed first needs all of the jerk for that.
-            let shapes = [None, Some(jerk)].into_iter().flat_map(|first| {
-                (starts.iter())
-                    .flat_map(move |start| tails.iter().map(move |tail| (first, *start, *tail)))
-            });
-            shapes
-                .filter_map(|(first, start, tail)| {
-                    self.braking(at, start, [to, tail], limits, first)
-                })
-                .find(|change| self.holds(at, *change))
-        })
+        let sooner = shape.filter(|shape| {
+            let end = at.end_of(shape).max(begun.end_of(&phases));
+            let time_s = |begun, change| self.time_s(at, ahead, (begun, change), end);
+            time_s(at, *shape) <= time_s(begun, phases)
+        });
+        sooner.or_else(|| (begun.index == at.index).then_some(phases))
     }
 
-    /// What ends at the first knot by which braking within a deceleration and a jerk has come to a
-    /// feed, from where it began so far ago.
-    fn braking(
+    /// The time from here to a knot with a change that begins here, or a few rows later.
+    fn time_s(
         &self,
         at: At,
-        (start, reached): (State, f64),
-        [to, tail]: [f64; 2],
-        limits @ [_, jerk]: [f64; 2],
-        first: Option<f64>,
-    ) -> Option<Change> {
-        let to_rest = Braking::quickest([start, State::REST], limits);
-        let (mut left, mut length) = (0_usize, reached);
-        let ahead = self.knots.iter().enumerate();
-        for (index, knot) in ahead.skip(at.index.saturating_add(1)) {
-            left = left.saturating_add(usize::from(knot.ds > 0.0));
-            length += knot.ds;
-            let end = self.planned_state(index, to);
-            let [kappa, wanted] = match (end.speed > 0.0, to > 0.0) {
-                (true, _) => Braking::quickest([start, end], limits),
-                (false, false) => to_rest,
-                // The course rests, for as long as it is not known how it goes on: no feed ends
-                // there.
-                (false, true) => break,
-            };
-            let taken = length - knot.ds * tail;
-            let shape = if taken >= wanted {
-                Some(kappa)
+        ahead: &[f64; AHEAD],
+        (begun, mut change): (At, Change),
+        end: usize,
+    ) -> f64 {
+        let knots = self.knots.iter().enumerate().take(end.saturating_add(1));
+        let (mut speed, mut time_s) = (at.speed, 0.0);
+        for (index, knot) in knots.skip(at.index.saturating_add(1)) {
+            let planned = self.planned(index);
+            let next = if index <= begun.index {
+                let row = index.saturating_sub(at.index).saturating_add(1);
+                ahead.get(row).map_or(0.0, |speed| *speed)
+            } else if change.left > 0 {
+                change.step(knot.ds, self.segment_s(index), planned)
             } else {
-                let is_gaining = taken <= Braking::gaining([start, end], jerk);
-                is_gaining.then_some(GAINING)
+                change.to * planned
             };
-            if let Some(kappa) = shape {
-                let braking = Braking::new([start, end], taken, kappa, first)?;
-                let kind = Kind::Braking(braking.having_reached(reached));
-                return Some(Change { kind, to, left });
-            }
-            // There the course rests itself.
-            if knot.speed <= 0.0 {
-                break;
-            }
+            time_s += 2.0 * knot.ds / (speed + next);
+            speed = next;
         }
-        None
+        time_s
     }
 
-    /// The same from rest, where there must be one: where the path is too short for the feed, the
+    /// The change from rest, where there must be one: where the path is too short for the feed, the
     /// one that ends with it, of the highest feed of halves of it.
     fn resume(&self, at: At, to: f64) -> Option<Change> {
         let mut feed = to;
         for _ in 0..HALVINGS {
-            if let Some(change) = self.change_to(at, 0.0, feed) {
+            if let Some(change) = self.speed_up(at, &[0.0; AHEAD], [0.0, feed]) {
                 return Some(change);
             }
             if let Trial::TooLong(available) = self.trial(at, [0.0, feed], usize::MAX)
@@ -307,16 +261,20 @@ impl<A: Axes> Course<'_, A> {
             index = next;
             count = count.saturating_add(usize::from(knot.ds > 0.0));
         }
-        let states = [self.state(at), self.planned_state(index, to)];
+        let ends = Ends {
+            start: self.state(at),
+            end: self.planned_state(index, to),
+            way: Way::Slower,
+        };
         let tail = if to > 0.0 { 0.0 } else { TAIL };
         // No feed ends where the course rests.
         let is_braking = to < from && (to <= 0.0 || self.planned(index) > 0.0);
         let kappas = KAPPAS.iter().filter(|_| is_braking);
-        let braking = kappas.filter_map(|kappa| {
-            Braking::new(states, length - last * tail, *kappa, None).map(Kind::Braking)
+        let phases = kappas.filter_map(|kappa| {
+            Phases::new(&ends, length - last * tail, *kappa, None).map(Kind::Phases)
         });
         let changes = FeedChange::over(table_s, [from, to]).map(Kind::Feed);
-        let changes = braking.chain(changes).map(|kind| Change {
+        let changes = phases.chain(changes).map(|kind| Change {
             kind,
             to,
             left: segments,
@@ -366,29 +324,30 @@ impl<A: Axes> Course<'_, A> {
     }
 }
 
+/// A few rows later, with the speeds that are known for them.
+fn later(at: At, ahead: &[f64; AHEAD]) -> impl Iterator<Item = At> {
+    let later = LATER.iter().map_while(move |rows| {
+        let &[before, speed] = ahead.get(*rows..)?.first_chunk()?;
+        let index = at.index.saturating_add(*rows);
+        Some(At {
+            index,
+            speed,
+            before,
+        })
+    });
+    later.take_while(|later| later.speed > 0.0)
+}
+
 /// What is found at a knot; `Some(None)` where what is found a few rows later ends sooner.
-fn unless_later(
+fn soonest(
     at: At,
     ahead: &[f64; AHEAD],
     find: impl Fn(At) -> Option<Change>,
 ) -> Option<Option<Change>> {
-    let end_of = |at: At, found: Change| at.index.saturating_add(found.left);
     let found = find(at);
-    let end = found.map_or(usize::MAX, |found| end_of(at, found));
-    for rows in LATER {
-        let index = at.index.saturating_add(rows);
-        let speeds = ahead.get(rows..).and_then(|speeds| speeds.first_chunk());
-        let Some(&[before, speed]) = speeds.filter(|[_, speed]| *speed > 0.0 && index < end) else {
-            break;
-        };
-        let later = At {
-            index,
-            speed,
-            before,
-        };
-        if find(later).is_some_and(|found| end_of(later, found) < end) {
-            return Some(None);
-        }
-    }
-    found.map(Some)
+    let end = found.map_or(usize::MAX, |found| at.end_of(&found));
+    let waits = { later(at, ahead) }
+        .take_while(|later| later.index < end)
+        .any(|later| find(later).is_some_and(|found| later.end_of(&found) < end));
+    if waits { Some(None) } else { found.map(Some) }
 }

@@ -1,6 +1,6 @@
-//! A change of the speed that goes on: of the feed, or braking.
+//! A change of the speed that goes on: of the feed, or by phases of constant jerk.
 
-use super::braking::Braking;
+use super::phases::{Phases, Way};
 use super::ramped::FeedChange;
 
 /// How the machine goes from one speed to another.
@@ -16,7 +16,7 @@ pub(super) struct Change {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Kind {
     Feed(FeedChange),
-    Braking(Braking),
+    Phases(Phases),
 }
 
 impl Change {
@@ -29,14 +29,14 @@ impl Change {
         }
         match &mut self.kind {
             Kind::Feed(change) => change.step(table_s) * planned,
-            Kind::Braking(braking) => braking.step(ds),
+            Kind::Phases(phases) => phases.step(ds),
         }
     }
 
-    /// The braking that goes on.
-    pub(super) const fn braking(&self) -> Option<&Braking> {
+    /// The phases to a lower speed that go on.
+    pub(super) fn braking(&self) -> Option<&Phases> {
         match &self.kind {
-            Kind::Braking(braking) => Some(braking),
+            Kind::Phases(phases) => Some(phases).filter(|phases| phases.way() == Way::Slower),
             Kind::Feed(_) => None,
         }
     }

@@ -1,6 +1,7 @@
 //! What is passed at a feed, and where on it the machine is.
 
-use super::braking::State;
+use super::change::Change;
+use super::phases::State;
 use crate::knot::ToolTimes;
 use crate::passes::segment_s;
 use crate::reciprocals::Reciprocals;
@@ -25,6 +26,13 @@ pub(crate) struct At {
     pub(crate) speed: f64,
     /// At the knot before.
     pub(crate) before: f64,
+}
+
+impl At {
+    /// The knot where a change ends that begins here.
+    pub(super) const fn end_of(&self, change: &Change) -> usize {
+        self.index.saturating_add(change.left)
+    }
 }
 
 impl<A: Axes> Course<'_, A> {

@@ -1,4 +1,4 @@
-//! How long a stop and a lower feed take with a limit of jerk, wherever they begin.
+//! How long a stop and another feed take with a limit of jerk, wherever they begin.
 
 use path_timing::{AxisLimits, Cubic, Curve, Knot, LookAhead, Row, Table};
 use test_support::{Random, setting};
@@ -81,6 +81,27 @@ impl Case {
             .find(|(row, planned)| (row.velocity[0] - feed * planned.velocity[0]).abs() < ROUNDING)
             .unwrap();
         (end.time_s - rows[asked - 1].time_s) / self.stop_s(rows, asked, end.duration_s)
+    }
+
+    /// The time from the row where the full feed is asked for to the end of the line, over that of
+    /// all of the acceleration from there up to the highest speed and down from it, a ramp of it at
+    /// either end and two rows.
+    fn rest_s(&self, rows: &[Row<[f64; 1]>], asked: usize) -> f64 {
+        check_limits(&[self.limits], None, rows);
+        let AxisLimits {
+            speed,
+            acceleration,
+            jerk,
+        } = self.limits;
+        let [at, next, end] = [&rows[asked - 1], &rows[asked], rows.last().unwrap()];
+        let left_mm = self.length_mm - at.position[0];
+        let squares = at.velocity[0] * at.velocity[0];
+        let highest = (acceleration * left_mm + squares / 2.0).sqrt().min(speed);
+        let ramps_mm = (highest * highest - squares / 2.0) / acceleration;
+        let ramps_s = (2.0 * highest - at.velocity[0]) / acceleration;
+        let best_s = ramps_s + (left_mm - ramps_mm).max(0.0) / highest;
+        let rounded_s = 2.0 * acceleration / jerk.unwrap() + next.duration_s + end.duration_s;
+        (end.time_s - at.time_s) / (best_s + rounded_s)
     }
 }
 
@@ -258,6 +279,76 @@ fn lower_feeds_on_random_lines_are_reached_in_time() {
     }
     println!("{worst:.3}");
     assert!(worst <= 1.0, "{worst}");
+}
+
+/// The rows of a table at a lower feed from one of them on, or with a hold there, and at the full
+/// one from where that is reached; and the row where the full one is asked for.
+fn slowed_for_a_while(
+    table: &Table<'_, [f64; 1]>,
+    planned: &[Row<[f64; 1]>],
+    asked: usize,
+    feed: f64,
+) -> (Vec<Row<[f64; 1]>>, usize) {
+    let mut playback = table.playback(1.0, &mut []).unwrap();
+    let mut rows = Vec::new();
+    let mut again = None;
+    loop {
+        let row = playback.next_row();
+        let is_there = row.is_none_or(|row| {
+            rows.push(row);
+            let wanted = feed * planned[rows.len() - 1].velocity[0];
+            rows.len() > asked && (row.velocity[0] - wanted).abs() < ROUNDING
+        });
+        if rows.len() == asked {
+            playback.set_feed(feed).unwrap();
+        }
+        match again {
+            None if is_there => {
+                again = Some(rows.len());
+                playback.set_feed(1.0).unwrap();
+            }
+            Some(again) if row.is_none() => return (rows, again),
+            _ => {}
+        }
+    }
+}
+
+/// Holds and lower feeds on random lines: what is left of a line took up to 1.8 times as long where
+/// the machine went on while the table gained speed.
+#[test]
+fn nothing_is_late_behind_a_hold_or_a_lower_feed() {
+    let mut random = Random::new(setting("SEED", 1));
+    let mut worst = 0.0_f64;
+    for _ in 0..setting("LINES", 30) {
+        let case = Case::random(&mut random);
+        let mut knots = vec![Knot::default(); 4002];
+        let table = case.table(&mut knots);
+        let planned: Vec<_> = table.rows().collect();
+        for _ in 0..6 {
+            let asked = case.random_row(&mut random);
+            let feed = random.within(-0.4, 0.9).max(0.0);
+            let (rows, again) = slowed_for_a_while(&table, &planned, asked, feed);
+            if again < rows.len() {
+                worst = worst.max(case.rest_s(&rows, again));
+            }
+        }
+    }
+    println!("{worst:.3}");
+    assert!(worst <= 1.0, "{worst}");
+}
+
+/// Where a lower feed is just reached, the jerk of its end leaves none for a higher one, which was
+/// reached after 400 rows.
+#[test]
+fn a_higher_feed_waits_a_row_for_its_jerk() {
+    let case = case(495.519, 753.116, 38_380.5, 305.093, 563);
+    let mut knots = vec![Knot::default(); 4002];
+    let table = case.table(&mut knots);
+    for again in 29..35 {
+        let rows = driven(&table, &[(13, 0.066266), (again, 1.0)]);
+        let share = case.rest_s(&rows, again);
+        assert!(share <= 1.0, "{share} from row {again}");
+    }
 }
 
 /// While the machine gains speed, and goes on to: it came up to nine times as late as it may, where

@@ -1,10 +1,10 @@
-//! To a lower speed with limited jerk, or to rest, at a given knot.
+//! To another speed with limited jerk, or to rest, at a given knot.
 
 use crate::number::sqrt;
 
-/// Three phases of constant jerk from a speed and an acceleration along the path to others, lower
-/// than the speed that would be gained: the acceleration falls to -A, stays, and rises to what it
-/// is to be.
+/// Three phases of constant jerk from a speed and an acceleration along the path to others. To
+/// speeds lower than what would be gained the acceleration falls to -A, stays, and rises to what it
+/// is to be; to higher ones all signs are turned.
 ///
 /// ```text
 /// A = κ √(J (v₀ - v₁) + (a₀² + a₁²)/2)        κ = 1: it does not stay
@@ -17,12 +17,10 @@ use crate::number::sqrt;
 /// A = κ √((v₀ - v₁ + a₀²/2J₀ + a₁²/2J) / (1/2J₀ + 1/2J))
 /// ```
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Braking {
+pub(super) struct Phases {
     /// Duration and jerk.
     phases: [(f64, f64); 3],
-    start: State,
-    /// The speed v₁.
-    lowest: f64,
+    ends: Ends,
     /// The length from the start to the knot reached.
     reached: f64,
 }
@@ -35,6 +33,9 @@ pub(super) struct Braking {
 /// w = ∛(9/2 J (x - xₗ/2)²)    at the knots x = xₗ, 2xₗ, 3xₗ .. from rest
 /// ```
 pub(super) const TAIL: f64 = 0.5;
+
+/// The same of the first segment from rest.
+pub(super) const HEAD: f64 = 0.5;
 
 /// Those that a stop is tried with, in their order. The more there are, the nearer to its limit is
 /// the jerk with which one ends at a knot; where the machine gains its highest speed, little less
@@ -56,11 +57,6 @@ impl State {
         speed: 0.0,
         acceleration: 0.0,
     };
-
-    /// (a₀² + a₁²)/2
-    fn squares(start: Self, end: Self) -> f64 {
-        (start.acceleration * start.acceleration + end.acceleration * end.acceleration) * 0.5
-    }
 
     /// The state after a time, and the length passed.
     fn after(self, time: f64, jerk: f64) -> (Self, f64) {
@@ -84,29 +80,122 @@ const MOST: f64 = 1.0 - 1e-6;
 /// By how much the jerk is changed to find two that the wanted one lies between.
 const FACTOR: f64 = 4.0;
 
-/// κ where the machine gains speed all the time, and less than it would: a lower feed near to the
-/// one before.
-pub(super) const GAINING: f64 = -1.0;
+/// κ where the acceleration only falls and rises again: the machine gains speed all the time, and
+/// less than it would, for a feed that is little lower.
+const WITHIN_SIGN: f64 = -1.0;
 
 /// Shapes to be tried, the quickest first.
 pub(super) const KAPPAS: [f64; 6] = [0.15, 0.25, 0.4, 0.6, 0.8, 1.0];
 
-impl Braking {
+/// What the phases lead from and to.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ends {
+    pub(super) start: State,
+    pub(super) end: State,
+    pub(super) way: Way,
+}
+
+/// On which side of what would be gained the speed lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Way {
+    Slower,
+    Faster,
+}
+
+impl Way {
+    /// By which all signs are turned.
+    const fn sign(self) -> f64 {
+        match self {
+            Self::Slower => 1.0,
+            Self::Faster => -1.0,
+        }
+    }
+}
+
+impl Ends {
+    /// The speed v₀ - v₁ that is lost.
+    fn lost(&self) -> f64 {
+        (self.start.speed - self.end.speed) * self.way.sign()
+    }
+
+    /// (a₀² + a₁²)/2
+    fn squares(&self) -> f64 {
+        let [start, end] = [self.start, self.end].map(|state| state.acceleration);
+        (start * start + end * end) * 0.5
+    }
+
+    /// The jerk above which it would not gain the speed at which it is to end.
+    fn most_jerk(&self) -> f64 {
+        let lost = self.lost();
+        if lost < 0.0 {
+            MOST * self.squares() / -lost
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// κ of the quickest within an acceleration and a jerk, if a length is enough for it.
+    pub(super) fn kappa(&self, length: f64, [acceleration, jerk]: [f64; 2]) -> Option<f64> {
+        // No change of speed takes less.
+        let mean = (self.start.speed + self.end.speed) * 0.5;
+        if self.lost() * mean > acceleration * length {
+            return None;
+        }
+        let jerk = jerk.min(self.most_jerk());
+        let most = sqrt(jerk * self.lost() + self.squares());
+        let kappa = (acceleration / most).min(1.0);
+        if self.phases([jerk; 2], kappa).end() <= length {
+            return Some(kappa);
+        }
+        (length <= self.length_within_sign(jerk)).then_some(WITHIN_SIGN)
+    }
+
+    /// The length that it takes where the acceleration keeps its sign; NaN where it would not fall
+    /// first and rise then.
+    fn length_within_sign(&self, jerk: f64) -> f64 {
+        let phases = self.phases([jerk; 2], WITHIN_SIGN);
+        let [(_, first), _, (_, last)] = phases.phases;
+        let sign = self.way.sign();
+        if first * sign < 0.0 && last * sign > 0.0 {
+            phases.end()
+        } else {
+            f64::NAN
+        }
+    }
+
+    fn phases(&self, jerks: [f64; 2], kappa: f64) -> Phases {
+        let sign = self.way.sign();
+        let [of_first, of_last] = jerks.map(|jerk| 0.5 / jerk);
+        let both = of_first + of_last;
+        let [start, end] = [self.start, self.end].map(|state| state.acceleration * sign);
+        let less = self.lost() + start * start * of_first + end * end * of_last;
+        let hardest = kappa * sqrt(less / both);
+        let [fall, rise] = [start, end].map(|acceleration| acceleration + hardest);
+        let stay = less / hardest - hardest * both;
+        let [first, last] = jerks;
+        Phases {
+            phases: [
+                (fall.abs() / first, -first.copysign(fall) * sign),
+                (stay.max(0.0), 0.0),
+                (rise.abs() / last, last.copysign(rise) * sign),
+            ],
+            ends: *self,
+            reached: 0.0,
+        }
+    }
+}
+
+impl Phases {
     /// What takes a length, with the jerk `first` in its first phase or with the same in all; none
     /// where no jerk does. Beyond, it goes on at its last speed.
-    pub(super) fn new(
-        [start, end]: [State; 2],
-        length: f64,
-        kappa: f64,
-        first: Option<f64>,
-    ) -> Option<Self> {
-        let with = |jerk: f64| Self::with_jerks([start, end], [first.unwrap_or(jerk), jerk], kappa);
-        // It would take this length if the speed fell evenly, and would do so in this time.
-        let time = 2.0 * length / (start.speed + end.speed);
-        let less = start.speed - end.speed;
-        let most = Self::most_jerk([start, end]);
-        let mut high = ((less.abs() + start.acceleration.abs() * time) / (time * time)).min(most);
-        // With more jerk what brakes takes less, and what gains speed at a lower acceleration more.
+    pub(super) fn new(ends: &Ends, length: f64, kappa: f64, first: Option<f64>) -> Option<Self> {
+        let with = |jerk: f64| ends.phases([first.unwrap_or(jerk), jerk], kappa);
+        // It would take this length if the speed changed evenly, and would do so in this time.
+        let time = 2.0 * length / (ends.start.speed + ends.end.speed);
+        let change = ends.lost().abs() + ends.start.acceleration.abs() * time;
+        let most = ends.most_jerk();
+        let mut high = (change / (time * time)).min(most);
+        // With more jerk it takes less, but more where the acceleration keeps its sign.
         let is_less = |jerk: f64| (with(jerk).end() - length) * kappa > 0.0;
         for _ in 0..ROUNDS {
             if !is_less(high) {
@@ -134,43 +223,13 @@ impl Braking {
         is_found.then_some(found)
     }
 
-    /// The jerk above which it would not gain the speed at which it is to end.
-    fn most_jerk([start, end]: [State; 2]) -> f64 {
-        let gain = end.speed - start.speed;
-        if gain > 0.0 {
-            MOST * State::squares(start, end) / gain
-        } else {
-            f64::INFINITY
-        }
-    }
-
-    /// The quickest within a deceleration and a jerk: its κ and the length that it takes.
-    pub(super) fn quickest([start, end]: [State; 2], [deceleration, jerk]: [f64; 2]) -> [f64; 2] {
-        let jerk = jerk.min(Self::most_jerk([start, end]));
-        let most = sqrt(jerk * (start.speed - end.speed) + State::squares(start, end));
-        let kappa = (deceleration / most).min(1.0);
-        [
-            kappa,
-            Self::with_jerks([start, end], [jerk; 2], kappa).end(),
-        ]
-    }
-
-    /// The length that it takes within a jerk where the machine gains speed all the time; NaN where
-    /// its acceleration would not fall first and rise then.
-    pub(super) fn gaining([start, end]: [State; 2], jerk: f64) -> f64 {
-        let jerk = jerk.min(Self::most_jerk([start, end]));
-        let gaining = Self::with_jerks([start, end], [jerk; 2], GAINING);
-        let [(_, fall), _, (_, rise)] = gaining.phases;
-        if fall < 0.0 && rise > 0.0 {
-            gaining.end()
-        } else {
-            f64::NAN
-        }
+    pub(super) const fn way(&self) -> Way {
+        self.ends.way
     }
 
     /// Where it began, and how far it has come since.
     pub(super) const fn begun(&self) -> (State, f64) {
-        (self.start, self.reached)
+        (self.ends.start, self.reached)
     }
 
     /// The same with a length that it has come already.
@@ -178,34 +237,12 @@ impl Braking {
         Self { reached, ..self }
     }
 
-    fn with_jerks([start, end]: [State; 2], jerks: [f64; 2], kappa: f64) -> Self {
-        let [of_first, of_last] = jerks.map(|jerk| 0.5 / jerk);
-        let both = of_first + of_last;
-        let less = start.speed - end.speed
-            + start.acceleration * start.acceleration * of_first
-            + end.acceleration * end.acceleration * of_last;
-        let hardest = kappa * sqrt(less / both);
-        let [fall, rise] = [start, end].map(|state| state.acceleration + hardest);
-        let stay = less / hardest - hardest * both;
-        let [first, last] = jerks;
-        Self {
-            phases: [
-                (fall.abs() / first, -first.copysign(fall)),
-                (stay.max(0.0), 0.0),
-                (rise.abs() / last, last.copysign(rise)),
-            ],
-            start,
-            lowest: end.speed,
-            reached: 0.0,
-        }
-    }
-
     /// The length that it takes.
     fn end(&self) -> f64 {
         let (_, length) = self
             .phases
             .iter()
-            .fold((self.start, 0.0), |(state, sum), phase| {
+            .fold((self.ends.start, 0.0), |(state, sum), phase| {
                 let (next, length) = state.after(phase.0, phase.1);
                 (next, sum + length)
             });
@@ -215,7 +252,7 @@ impl Braking {
     /// The speed at the next knot, a length further.
     pub(super) fn step(&mut self, ds: f64) -> f64 {
         self.reached += ds;
-        let (mut state, mut left) = (self.start, self.reached);
+        let (mut state, mut left) = (self.ends.start, self.reached);
         for (time, jerk) in self.phases {
             let (next, length) = state.after(time, jerk);
             if length >= left {
@@ -232,7 +269,7 @@ impl Braking {
             }
             (state, left) = (next, left - length);
         }
-        self.lowest
+        self.ends.end.speed
     }
 }
 
@@ -241,7 +278,7 @@ const CLOSE: f64 = 1e-9;
 
 #[cfg(test)]
 mod tests {
-    use super::{Braking, KAPPAS, State};
+    use super::{Ends, KAPPAS, Phases, State, Way};
 
     /// From 2 at an acceleration of 1 over a length of 3, in 300 steps: it comes to rest at its
     /// end, its speed goes on smoothly from the start.
@@ -251,8 +288,13 @@ mod tests {
             speed: 2.0,
             acceleration: 1.0,
         };
+        let ends = Ends {
+            start,
+            end: State::REST,
+            way: Way::Slower,
+        };
         for kappa in KAPPAS {
-            let mut stop = Braking::new([start, State::REST], 2.995, kappa, None).unwrap();
+            let mut stop = Phases::new(&ends, 2.995, kappa, None).unwrap();
             let (mut before, mut steepest) = (2.0_f64, 0.0_f64);
             for number in 1..=300 {
                 let speed = stop.step(0.01);
