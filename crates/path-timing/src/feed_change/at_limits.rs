@@ -1,7 +1,7 @@
 //! Changes of the speed by three phases, at the limits that the axes have where these begin.
 
 use super::change::{Change, Kind};
-use super::phases::{Ends, HEAD, Phases, State, TAILS, TAILS_OF_STOPS, Way};
+use super::phases::{Ends, HEADS, Phases, State, TAILS, TAILS_OF_STOPS, Way};
 use super::{At, Course};
 use crate::Axes;
 
@@ -36,18 +36,19 @@ impl Reached {
 impl<A: Axes> Course<'_, A> {
     /// The change by three phases that begins here.
     pub(super) fn change_from(&self, at: At, to: f64, way: Way) -> Option<Change> {
-        let head = self.knots.get(at.index.saturating_add(1))?.ds * HEAD;
+        let ahead = self.knots.get(at.index.saturating_add(1))?;
+        let [head, late] = HEADS.map(|head| -head * ahead.ds);
         if at.speed <= 0.0 {
-            return self.change_at_limits(at, &[(State::REST, -head)], to, way);
+            return self.change_at_limits(at, &[(State::REST, head)], to, way);
         }
         // What the segment before has in its middle, and what the table has at the knot.
         let [here, between] = [self.state(at), self.state_between(at)];
         match way {
             Way::Slower => self.change_at_limits(at, &[(here, 0.0), (between, 0.0)], to, way),
             Way::Faster => {
-                // Near to rest as from it, where braking may have come to its end just now.
+                // Near to rest as from it.
                 let table = self.planned_state(at.index, at.speed / self.planned(at.index));
-                let starts = [(here, 0.0), (between, 0.0), (table, -head)];
+                let starts = [(here, 0.0), (between, 0.0), (table, head), (table, late)];
                 self.change_at_limits(at, &starts, to, way)
             }
         }

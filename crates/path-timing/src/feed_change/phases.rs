@@ -34,8 +34,8 @@ pub(super) struct Phases {
 /// ```
 pub(super) const TAIL: f64 = 0.5;
 
-/// The same of the first segment from rest.
-pub(super) const HEAD: f64 = 0.5;
+/// The same of the first segment from rest, and where braking has come near to it just now.
+pub(super) const HEADS: [f64; 2] = [0.5, 0.75];
 
 /// Those that a stop is tried with, in their order. The more there are, the nearer to its limit is
 /// the jerk with which one ends at a knot; where the machine gains its highest speed, little less
