@@ -271,7 +271,7 @@ impl<A: Axes> Course<'_, A> {
         let is_braking = to < from && (to <= 0.0 || self.planned(index) > 0.0);
         let kappas = KAPPAS.iter().filter(|_| is_braking);
         let phases = kappas.filter_map(|kappa| {
-            Phases::new(&ends, length - last * tail, *kappa, None).map(Kind::Phases)
+            Phases::new(&ends, length - last * tail, *kappa, None).map(Kind::Slower)
         });
         let changes = FeedChange::over(table_s, [from, to]).map(Kind::Feed);
         let changes = phases.chain(changes).map(|kind| Change {

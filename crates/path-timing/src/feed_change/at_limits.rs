@@ -25,8 +25,12 @@ impl Reached {
     /// With a jerk of its own in the first phase, or with the same in all.
     fn change(&self, to: f64, first: Option<f64>) -> Option<Change> {
         let phases = Phases::new(&self.ends, self.taken, self.kappa, first)?;
+        let phases = phases.having_reached(self.begun);
         Some(Change {
-            kind: Kind::Phases(phases.having_reached(self.begun)),
+            kind: match self.ends.way {
+                Way::Slower => Kind::Slower(phases),
+                Way::Faster => Kind::Faster(phases),
+            },
             to,
             left: self.left,
         })

@@ -1,6 +1,6 @@
 //! A change of the speed that goes on: of the feed, or by phases of constant jerk.
 
-use super::phases::{Phases, Way};
+use super::phases::Phases;
 use super::ramped::FeedChange;
 
 /// How the machine goes from one speed to another.
@@ -16,7 +16,8 @@ pub(super) struct Change {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Kind {
     Feed(FeedChange),
-    Phases(Phases),
+    Slower(Phases),
+    Faster(Phases),
 }
 
 impl Change {
@@ -29,15 +30,15 @@ impl Change {
         }
         match &mut self.kind {
             Kind::Feed(change) => change.step(table_s) * planned,
-            Kind::Phases(phases) => phases.step(ds),
+            Kind::Slower(phases) | Kind::Faster(phases) => phases.step(ds),
         }
     }
 
     /// The phases to a lower speed that go on.
-    pub(super) fn braking(&self) -> Option<&Phases> {
+    pub(super) const fn braking(&self) -> Option<&Phases> {
         match &self.kind {
-            Kind::Phases(phases) => Some(phases).filter(|phases| phases.way() == Way::Slower),
-            Kind::Feed(_) => None,
+            Kind::Slower(phases) => Some(phases),
+            Kind::Feed(_) | Kind::Faster(_) => None,
         }
     }
 }

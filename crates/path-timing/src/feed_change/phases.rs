@@ -20,7 +20,9 @@ use crate::number::sqrt;
 pub(super) struct Phases {
     /// Duration and jerk.
     phases: [(f64, f64); 3],
-    ends: Ends,
+    start: State,
+    /// The speed v₁.
+    last: f64,
     /// The length from the start to the knot reached.
     reached: f64,
 }
@@ -96,7 +98,7 @@ pub(super) struct Ends {
 }
 
 /// On which side of what would be gained the speed lies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub(super) enum Way {
     Slower,
     Faster,
@@ -179,7 +181,8 @@ impl Ends {
                 (stay.max(0.0), 0.0),
                 (rise.abs() / last, last.copysign(rise) * sign),
             ],
-            ends: *self,
+            start: self.start,
+            last: self.end.speed,
             reached: 0.0,
         }
     }
@@ -223,13 +226,9 @@ impl Phases {
         is_found.then_some(found)
     }
 
-    pub(super) const fn way(&self) -> Way {
-        self.ends.way
-    }
-
     /// Where it began, and how far it has come since.
     pub(super) const fn begun(&self) -> (State, f64) {
-        (self.ends.start, self.reached)
+        (self.start, self.reached)
     }
 
     /// The same with a length that it has come already.
@@ -242,7 +241,7 @@ impl Phases {
         let (_, length) = self
             .phases
             .iter()
-            .fold((self.ends.start, 0.0), |(state, sum), phase| {
+            .fold((self.start, 0.0), |(state, sum), phase| {
                 let (next, length) = state.after(phase.0, phase.1);
                 (next, sum + length)
             });
@@ -252,7 +251,7 @@ impl Phases {
     /// The speed at the next knot, a length further.
     pub(super) fn step(&mut self, ds: f64) -> f64 {
         self.reached += ds;
-        let (mut state, mut left) = (self.ends.start, self.reached);
+        let (mut state, mut left) = (self.start, self.reached);
         for (time, jerk) in self.phases {
             let (next, length) = state.after(time, jerk);
             if length >= left {
@@ -269,7 +268,7 @@ impl Phases {
             }
             (state, left) = (next, left - length);
         }
-        self.ends.end.speed
+        self.last
     }
 }
 
