@@ -16,6 +16,7 @@ pub(crate) use course::{At, Course};
 
 use crate::Axes;
 use crate::jerk::{Most, Walk};
+use crate::passes::time_of;
 use change::{Change, Kind};
 use phases::{Ends, KAPPAS, Phases, TAIL, Way};
 use ramped::FeedChange;
@@ -37,7 +38,7 @@ enum Trial {
     TooLong(usize),
 }
 
-/// Rows after which a lower feed or a stop is looked for, too.
+/// Rows after which a change is looked for, too.
 const LATER: [usize; 6] = [1, 2, 3, 5, 8, 13];
 
 /// The speeds that are known for that: those before and after the last segment of the latest.
@@ -107,22 +108,22 @@ impl SmoothFeed {
     fn change_for<A: Axes>(&self, course: &Course<'_, A>, at: At, wanted: f64) -> Option<Change> {
         let feed = self.feed;
         if feed <= 0.0 {
-            course.resume(at, wanted)
-        } else if wanted < feed {
-            let ahead = course.ahead(at, feed, self.change);
+            return course.resume(at, wanted);
+        }
+        let ahead = course.ahead(at, feed, self.change);
+        if wanted < feed {
             let going = self.change.as_ref().and_then(Change::braking);
             course.brake_soonest(at, &ahead, going, [feed, wanted])
         } else {
-            let ahead = course.ahead(at, feed, self.change);
             course.speed_up(at, &ahead, [feed, wanted])
         }
     }
 }
 
 impl<A: Axes> Course<'_, A> {
-    /// The shortest change found to another feed that keeps all limits and can be followed by a
-    /// constant feed: over 1, 2, 3, 5, 8 .. segments, then fewer by halves.
-    fn change_to(&self, at: At, from: f64, to: f64) -> Option<Change> {
+    /// The shortest change found, by a shape of the feed or by phases of any length, that keeps all
+    /// limits and can be followed by a constant feed: over 1, 2, 3, 5, 8 .. segments, then fewer by halves.
+    fn by_shape(&self, at: At, from: f64, to: f64) -> Option<Change> {
         let (mut too_few, mut segments) = (0_usize, 1_usize);
         let mut found = loop {
             match self.trial(at, [from, to], segments) {
@@ -179,19 +180,19 @@ impl<A: Axes> Course<'_, A> {
         // What brakes already goes on as it began. One found by its length takes long to find, and
         // longer to run.
         going
-            .and_then(|going| self.change_at_limits(at, &[going.begun()], to, Way::Slower))
+            .and_then(|going| self.at_limits(at, &[going.begun()], to, Way::Slower))
             .map(Some)
-            .or_else(|| soonest(at, ahead, |at| self.change_from(at, to, Way::Slower)))
-            .or_else(|| soonest(at, ahead, |at| self.change_to(at, from, to)))
+            .or_else(|| soonest(at, ahead, |at| self.by_phases(at, to, Way::Slower)))
+            .or_else(|| soonest(at, ahead, |at| self.by_shape(at, from, to)))
             .flatten()
     }
 
     /// The change to a higher feed that begins here: by phases, or by a shape of the feed if that
     /// takes less time.
     fn speed_up(&self, at: At, ahead: &[f64; AHEAD], [from, to]: [f64; 2]) -> Option<Change> {
-        let shape = self.change_to(at, from, to);
-        let by_phases = |at| Some((at, self.change_from(at, to, Way::Faster)?));
-        let phases = by_phases(at).or_else(|| later(at, ahead).find_map(by_phases));
+        let shape = self.by_shape(at, from, to);
+        let from_there = |at| Some((at, self.by_phases(at, to, Way::Faster)?));
+        let phases = from_there(at).or_else(|| later(at, ahead).find_map(from_there));
         let Some((begun, phases)) = phases else {
             return shape;
         };
@@ -223,7 +224,7 @@ impl<A: Axes> Course<'_, A> {
             } else {
                 change.to * planned
             };
-            time_s += 2.0 * knot.ds / (speed + next);
+            time_s += time_of(knot.ds, [speed, next]);
             speed = next;
         }
         time_s

@@ -9,58 +9,30 @@ use crate::Axes;
 /// quickest; of all lengths few do where the machine gains speed, for it has a limit, too.
 const OF_LIMITS: [f64; 8] = [1.0, 0.995, 0.99, 0.98, 0.96, 0.93, 0.9, 0.85];
 
-/// Where three phases end.
-struct Reached {
-    ends: Ends,
-    /// The length that they have come already.
-    begun: f64,
-    /// The length that they take.
-    taken: f64,
-    kappa: f64,
-    /// Segments to go.
-    left: usize,
-}
-
-impl Reached {
-    /// With a jerk of its own in the first phase, or with the same in all.
-    fn change(&self, to: f64, first: Option<f64>) -> Option<Change> {
-        let phases = Phases::new(&self.ends, self.taken, self.kappa, first)?;
-        let phases = phases.having_reached(self.begun);
-        Some(Change {
-            kind: match self.ends.way {
-                Way::Slower => Kind::Slower(phases),
-                Way::Faster => Kind::Faster(phases),
-            },
-            to,
-            left: self.left,
-        })
-    }
-}
-
 impl<A: Axes> Course<'_, A> {
     /// The change by three phases that begins here.
-    pub(super) fn change_from(&self, at: At, to: f64, way: Way) -> Option<Change> {
+    pub(super) fn by_phases(&self, at: At, to: f64, way: Way) -> Option<Change> {
         let ahead = self.knots.get(at.index.saturating_add(1))?;
         let [head, late] = HEADS.map(|head| -head * ahead.ds);
         if at.speed <= 0.0 {
-            return self.change_at_limits(at, &[(State::REST, head)], to, way);
+            return self.at_limits(at, &[(State::REST, head)], to, way);
         }
         // What the segment before has in its middle, and what the table has at the knot.
         let [here, between] = [self.state(at), self.state_between(at)];
         match way {
-            Way::Slower => self.change_at_limits(at, &[(here, 0.0), (between, 0.0)], to, way),
+            Way::Slower => self.at_limits(at, &[(here, 0.0), (between, 0.0)], to, way),
             Way::Faster => {
                 // Near to rest as from it.
                 let table = self.planned_state(at.index, at.speed / self.planned(at.index));
                 let starts = [(here, 0.0), (between, 0.0), (table, head), (table, late)];
-                self.change_at_limits(at, &starts, to, way)
+                self.at_limits(at, &starts, to, way)
             }
         }
     }
 
     /// The same that began at one of these, so far ago, and uses most of the limits that the axes
     /// have here.
-    pub(super) fn change_at_limits(
+    pub(super) fn at_limits(
         &self,
         at: At,
         starts: &[(State, f64)],
@@ -93,22 +65,22 @@ impl<A: Axes> Course<'_, A> {
             });
             shapes
                 .filter_map(|(first, (start, begun), tail)| {
-                    self.reached(at, (start, way, begun), [to, tail], limits)?
-                        .change(to, first)
+                    self.within(at, (start, way, begun), [to, tail], limits, first)
                 })
                 .find(|change| self.holds(at, *change))
         })
     }
 
-    /// The first knot by which it has come to a feed within an acceleration and a jerk, from where
-    /// it began so far ago.
-    fn reached(
+    /// What ends at the first knot by which it has come to a feed within an acceleration and a jerk,
+    /// from where it began so far ago.
+    fn within(
         &self,
         at: At,
         (start, way, begun): (State, Way, f64),
         [to, tail]: [f64; 2],
         limits: [f64; 2],
-    ) -> Option<Reached> {
+        first: Option<f64>,
+    ) -> Option<Change> {
         let (mut left, mut length) = (0_usize, begun);
         let ahead = self.knots.iter().enumerate();
         for (index, knot) in ahead.skip(at.index.saturating_add(1)) {
@@ -122,13 +94,12 @@ impl<A: Axes> Course<'_, A> {
             let ends = Ends { start, end, way };
             let taken = length - knot.ds * tail;
             if let Some(kappa) = ends.kappa(taken, limits) {
-                return Some(Reached {
-                    ends,
-                    begun,
-                    taken,
-                    kappa,
-                    left,
-                });
+                let phases = Phases::new(&ends, taken, kappa, first)?.having_reached(begun);
+                let kind = match way {
+                    Way::Slower => Kind::Slower(phases),
+                    Way::Faster => Kind::Faster(phases),
+                };
+                return Some(Change { kind, to, left });
             }
             // There the course rests itself.
             if knot.speed <= 0.0 {

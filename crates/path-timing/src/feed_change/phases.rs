@@ -36,16 +36,17 @@ pub(super) struct Phases {
 /// ```
 pub(super) const TAIL: f64 = 0.5;
 
-/// The same of the first segment from rest, and where braking has come near to it just now.
-pub(super) const HEADS: [f64; 2] = [0.5, 0.75];
-
 /// Those that a stop is tried with, in their order. The more there are, the nearer to its limit is
 /// the jerk with which one ends at a knot; where the machine gains its highest speed, little less
 /// passes the limit of speed.
 pub(super) const TAILS_OF_STOPS: [f64; 4] = [TAIL, 0.75, 0.625, 0.875];
 
-/// The same of a lower feed.
+/// The same of another feed.
 pub(super) const TAILS: [f64; 2] = [0.0, 0.25];
+
+/// The part of the first segment before which they begin from rest, and where braking has come near
+/// to it just now.
+pub(super) const HEADS: [f64; 2] = [TAIL, 0.75];
 
 /// Speed and acceleration of the parameter.
 #[derive(Debug, Clone, Copy)]
@@ -136,9 +137,9 @@ impl Ends {
         }
     }
 
-    /// κ of the quickest within an acceleration and a jerk, if a length is enough for it.
+    /// κ of what takes a length within an acceleration and a jerk; none where it is not enough.
     pub(super) fn kappa(&self, length: f64, [acceleration, jerk]: [f64; 2]) -> Option<f64> {
-        // No change of speed takes less.
+        // At all of the acceleration.
         let mean = (self.start.speed + self.end.speed) * 0.5;
         if self.lost() * mean > acceleration * length {
             return None;
@@ -277,18 +278,21 @@ const CLOSE: f64 = 1e-9;
 
 #[cfg(test)]
 mod tests {
-    use super::{Ends, KAPPAS, Phases, State, Way};
+    use super::{Ends, KAPPAS, Phases, State, WITHIN_SIGN, Way};
+
+    const fn state(speed: f64, acceleration: f64) -> State {
+        State {
+            speed,
+            acceleration,
+        }
+    }
 
     /// From 2 at an acceleration of 1 over a length of 3, in 300 steps: it comes to rest at its
     /// end, its speed goes on smoothly from the start.
     #[test]
     fn a_stop_ends_at_rest_where_it_is_to() {
-        let start = State {
-            speed: 2.0,
-            acceleration: 1.0,
-        };
         let ends = Ends {
-            start,
+            start: state(2.0, 1.0),
             end: State::REST,
             way: Way::Slower,
         };
@@ -305,6 +309,61 @@ mod tests {
                 before = speed;
             }
             assert!(before.abs() < f64::EPSILON && steepest < -0.5);
+        }
+    }
+
+    /// Of the phases' end, by the sums of three times 60 halvings.
+    const ROUNDING: f64 = 1e-9;
+
+    /// The state behind all phases, and the highest and the lowest acceleration on the way.
+    fn run(phases: &Phases) -> (State, [f64; 2]) {
+        let start = phases.start.acceleration;
+        let begun = (phases.start, [start; 2]);
+        (phases.phases.iter()).fold(begun, |(state, [high, low]), (time, jerk)| {
+            let (next, _) = state.after(*time, *jerk);
+            let bounds = [high.max(next.acceleration), low.min(next.acceleration)];
+            (next, bounds)
+        })
+    }
+
+    /// Each ends at the speed and the acceleration that it is to, and at its length.
+    fn assert_ends(ends: &Ends, length: f64, kappa: f64) -> [f64; 2] {
+        let phases = Phases::new(ends, length, kappa, None).unwrap();
+        let (end, bounds) = run(&phases);
+        let off = [
+            end.speed - ends.end.speed,
+            end.acceleration - ends.end.acceleration,
+            phases.end() - length,
+        ];
+        assert!(off.iter().all(|off| off.abs() < ROUNDING), "{off:?}");
+        bounds
+    }
+
+    #[test]
+    fn a_feed_that_is_little_lower_is_reached_without_braking() {
+        let ends = Ends {
+            start: state(2.0, 1.0),
+            end: state(2.2, 0.8),
+            way: Way::Slower,
+        };
+        let length = 0.75;
+        assert_eq!(ends.kappa(length, [1.0, 8.0]), Some(WITHIN_SIGN));
+        let [high, low] = assert_ends(&ends, length, WITHIN_SIGN);
+        assert!(high <= 1.0 && 0.0 < low && low < 0.8, "{high} {low}");
+    }
+
+    #[test]
+    fn a_higher_speed_is_gained_from_rest_and_on_the_way() {
+        for start in [State::REST, state(0.5, -0.2)] {
+            let ends = Ends {
+                start,
+                end: state(2.0, 0.0),
+                way: Way::Faster,
+            };
+            for kappa in KAPPAS {
+                let [high, low] = assert_ends(&ends, 3.0, kappa);
+                assert!(high > 0.5 && low >= start.acceleration, "{high} {low}");
+            }
         }
     }
 }
