@@ -17,7 +17,7 @@ mod masses;
 #[cfg(feature = "path-timing")]
 mod planned;
 
-use nalgebra::{RealField, Vector3};
+use nalgebra::{Matrix3, RealField, Vector3};
 use trig_kernels::{Trig, sin_cos};
 
 pub use masses::{DeltaMasses, DynamicsError};
@@ -83,17 +83,6 @@ impl<T: RealField + Trig> Delta<T> {
     }
 }
 
-/// An elbow in motion, by the time derivatives of its place.
-#[derive(Clone, Copy)]
-struct ElbowSide<T> {
-    /// Its place's derivative by the arm's angle.
-    tangent: Vector3<T>,
-    velocity: Vector3<T>,
-    acceleration: Vector3<T>,
-    /// sin θ, the upper arm's reach outward, with the sign of its angle.
-    outward: T,
-}
-
 impl<T: RealField + Trig> DeltaDynamics<T> {
     /// The masses.
     #[must_use]
@@ -147,52 +136,97 @@ impl<T: RealField + Trig> DeltaDynamics<T> {
         rates: Vector3<T>,
         accelerations: Vector3<T>,
     ) -> Result<Vector3<T>, PoseError<T>> {
-        let (delta, masses) = (&self.delta, &self.masses);
-        let inverse = pose.rod_inverse()?;
-        let jacobian = pose.jacobian()?;
-        let velocity = jacobian * rates;
+        Ok(self.posture(pose)?.torques(rates, accelerations))
+    }
+
+    /// What the torques of all motions through a pose have in common.
+    fn posture(&self, pose: &Pose<T>) -> Result<Posture<'_, T>, PoseError<T>> {
+        let delta = &self.delta;
         let arms = zip(delta.prepared().each_ref(), delta.thetas(pose.angles()));
-        let turning = zip(rates.into(), accelerations.into());
-        let elbows = zip(arms, turning).map(|((prepared, theta), (rate, acceleration))| {
+        let elbows = arms.map(|(prepared, theta)| {
             let (sin, cos) = sin_cos(theta);
-            let tangent = delta.flip(prepared.tangent((sin, cos))) * prepared.turn;
             let inward = prepared.in_plane(-prepared.upper * sin, prepared.upper * cos);
-            ElbowSide {
-                tangent,
-                velocity: tangent * rate,
-                acceleration: tangent * acceleration + delta.flip(inward) * (rate * rate),
+            Elbow {
+                tangent: delta.flip(prepared.tangent((sin, cos))) * prepared.turn,
+                inward: delta.flip(inward),
                 outward: sin * prepared.turn,
+                lower: prepared.lower,
             }
         });
-        let rods = zip(pose.rods().each_ref(), delta.prepared().each_ref());
-        let [a, b, c] =
-            zip(zip(rods, elbows), inverse).map(|(((rod, prepared), elbow), column)| {
-                let turned = (velocity - elbow.velocity).norm_squared() / prepared.lower;
-                column * (rod.dot(&elbow.acceleration) - turned)
+        Ok(Posture {
+            masses: &self.masses,
+            unit_m: self.unit_m,
+            inverse: pose.rod_inverse()?,
+            jacobian: pose.jacobian()?,
+            rods: *pose.rods(),
+            elbows,
+            gravity: delta.flip(Vector3::new(
+                T::zero(),
+                T::zero(),
+                -self.masses.gravity_m_s2 / self.unit_m,
+            )),
+        })
+    }
+}
+
+/// An elbow in a pose.
+struct Elbow<T> {
+    /// Its place's derivative by the arm's angle, and that one's.
+    tangent: Vector3<T>,
+    inward: Vector3<T>,
+    /// sin θ, the upper arm's reach outward, with the sign of its angle.
+    outward: T,
+    /// The length of its rods.
+    lower: T,
+}
+
+/// A Delta in a pose.
+struct Posture<'a, T> {
+    masses: &'a DeltaMasses<T>,
+    unit_m: T,
+    /// Of the matrix of the rods' directions, by columns.
+    inverse: [Vector3<T>; 3],
+    jacobian: Matrix3<T>,
+    rods: [Vector3<T>; 3],
+    elbows: [Elbow<T>; 3],
+    gravity: Vector3<T>,
+}
+
+impl<T: RealField + Copy> Posture<'_, T> {
+    /// The torques of a motion, without friction.
+    fn torques(&self, rates: Vector3<T>, accelerations: Vector3<T>) -> Vector3<T> {
+        let (masses, gravity) = (self.masses, self.gravity);
+        let velocity = self.jacobian * rates;
+        let turning = zip(rates.into(), accelerations.into());
+        let of_elbows =
+            zip(self.elbows.each_ref(), turning).map(|(elbow, (rate, acceleration))| {
+                elbow.tangent * acceleration + elbow.inward * (rate * rate)
             });
+        let elbows = zip(zip(self.elbows.each_ref(), of_elbows), rates.into());
+        let [a, b, c] = zip(zip(self.rods, self.inverse), elbows).map(
+            |((rod, column), ((elbow, acceleration), rate))| {
+                let turned = (velocity - elbow.tangent * rate).norm_squared() / elbow.lower;
+                column * (rod.dot(&acceleration) - turned)
+            },
+        );
         let acceleration = a + b + c;
 
         let number = |value: f64| nalgebra::convert::<f64, T>(value);
-        let gravity = delta.flip(Vector3::new(
-            T::zero(),
-            T::zero(),
-            -masses.gravity_m_s2 / self.unit_m,
-        ));
         let (sixth, half) = (masses.rods_kg / number(6.0), masses.rods_kg * number(0.5));
         let mut force = (acceleration - gravity) * (masses.platform_kg + masses.payload_kg);
-        for elbow in &elbows {
-            force += (elbow.acceleration + acceleration * number(2.0)) * sixth - gravity * half;
+        for of_elbow in &of_elbows {
+            force += (of_elbow + acceleration * number(2.0)) * sixth - gravity * half;
         }
-        let at_platform = jacobian.tr_mul(&force);
+        let at_platform = self.jacobian.tr_mul(&force);
         let square = self.unit_m * self.unit_m;
+        let elbows = zip(self.elbows.each_ref(), of_elbows);
         let arms = zip(elbows, zip(at_platform.into(), accelerations.into()));
-        let torques = arms.map(|(elbow, (at_platform, acceleration_of_arm))| {
-            let at_elbow =
-                (elbow.acceleration * number(2.0) + acceleration) * sixth - gravity * half;
-            let own = masses.arm_kg_m2 * acceleration_of_arm
-                + masses.arm_kg_m * masses.gravity_m_s2 * elbow.outward;
+        let torques = arms.map(|((elbow, of_elbow), (at_platform, of_arm))| {
+            let at_elbow = (of_elbow * number(2.0) + acceleration) * sixth - gravity * half;
+            let own =
+                masses.arm_kg_m2 * of_arm + masses.arm_kg_m * masses.gravity_m_s2 * elbow.outward;
             own + (elbow.tangent.dot(&at_elbow) + at_platform) * square
         });
-        Ok(torques.into())
+        torques.into()
     }
 }

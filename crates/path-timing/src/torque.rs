@@ -41,6 +41,18 @@ pub trait Dynamics {
         acceleration: &Self::Axes,
     ) -> Self::Axes;
 
+    /// The torques of motions that pass one position, each by its velocity and acceleration: as
+    /// [`torques`](Self::torques), for what has work in common.
+    fn torques_of<const N: usize>(
+        &self,
+        position: &Self::Axes,
+        motions: &[[Self::Axes; 2]; N],
+    ) -> [Self::Axes; N] {
+        motions
+            .each_ref()
+            .map(|[velocity, acceleration]| self.torques(position, velocity, acceleration))
+    }
+
     /// The friction of each axis, which is added.
     fn friction(&self) -> <Self::Axes as Axes>::Of<Friction>;
 

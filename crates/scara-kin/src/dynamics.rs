@@ -165,16 +165,21 @@ impl<T: RealField + Trig> ArmDynamics<T> {
         rates: Vector2<T>,
         accelerations: Vector2<T>,
     ) -> Vector2<T> {
+        self.posture(joints).torques(rates, accelerations)
+    }
+
+    /// What the torques of all motions through a pose have in common.
+    fn posture(&self, joints: Joints<T>) -> Posture<T> {
         let lumped = self.lumped();
         let (sin, cos) = sin_cos(joints.elbow);
-        let (turning, coupled) = (lumped.coupling * sin, lumped.coupling * cos);
-        let mixed = lumped.delta + coupled;
-        let inertial = Vector2::new(
-            (lumped.alpha + coupled * two()) * accelerations.x + mixed * accelerations.y,
-            mixed * accelerations.x + lumped.elbow * accelerations.y,
-        );
-        let centrifugal = Vector2::new(-(rates.x * two() + rates.y) * rates.y, rates.x * rates.x);
-        inertial + centrifugal * turning + self.weight(joints, &lumped)
+        let coupled = lumped.coupling * cos;
+        Posture {
+            shoulder: lumped.alpha + coupled * two(),
+            mixed: lumped.delta + coupled,
+            elbow: lumped.elbow,
+            turning: lumped.coupling * sin,
+            weight: self.weight(joints, &lumped),
+        }
     }
 
     /// What gravity takes, along -Y of the world.
@@ -215,6 +220,29 @@ impl<T: RealField + Trig> ArmDynamics<T> {
             weights: [upper.mass_kg * upper.centre_m + carried * l1, moment]
                 .map(|moment| moment * gravity),
         }
+    }
+}
+
+/// An arm in a pose.
+struct Posture<T> {
+    /// Inertia of both joints, and what each has of the other.
+    shoulder: T,
+    elbow: T,
+    mixed: T,
+    /// k sin q2.
+    turning: T,
+    weight: Vector2<T>,
+}
+
+impl<T: RealField + Copy> Posture<T> {
+    /// The torques of a motion, without friction.
+    fn torques(&self, rates: Vector2<T>, accelerations: Vector2<T>) -> Vector2<T> {
+        let inertial = Vector2::new(
+            self.shoulder * accelerations.x + self.mixed * accelerations.y,
+            self.mixed * accelerations.x + self.elbow * accelerations.y,
+        );
+        let centrifugal = Vector2::new(-(rates.x * two() + rates.y) * rates.y, rates.x * rates.x);
+        inertial + centrifugal * self.turning + self.weight
     }
 }
 

@@ -145,12 +145,22 @@ impl Dynamics for DeltaDynamics {
         velocity: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> [f64; 3] {
+        let [torques] = self.torques_of(position, &[[*velocity, *acceleration]]);
+        torques
+    }
+
+    fn torques_of<const N: usize>(
+        &self,
+        position: &[f64; 3],
+        motions: &[[[f64; 3]; 2]; N],
+    ) -> [[f64; 3]; N] {
         let pose: Option<Pose> = self.delta.pose_of(Vector3::from(*position)).ok();
-        let torques = pose.and_then(|pose| {
-            let motion = [*velocity, *acceleration].map(Vector3::from);
-            self.frictionless(&pose, motion[0], motion[1]).ok()
-        });
-        torques.map_or([f64::NAN; 3], Into::into)
+        let posture = pose.as_ref().and_then(|pose| self.posture(pose).ok());
+        posture.map_or([[f64::NAN; 3]; N], |posture| {
+            motions.map(|[rates, accelerations]| {
+                posture.torques(rates.into(), accelerations.into()).into()
+            })
+        })
     }
 
     fn friction(&self) -> [Friction; 3] {

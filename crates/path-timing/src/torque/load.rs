@@ -1,7 +1,8 @@
 //! The torques at both ends of a segment, as forms of the speeds of the parameter there.
 
 use super::{Dynamics, TorqueCurve, TorqueLimits, heading, sign};
-use crate::number::{larger_or_nan, sqrt};
+use crate::number::{LARGEST, larger, larger_or_nan, smaller, sqrt};
+use crate::segment::End;
 use crate::{Axes, Knot};
 
 /// The torque of an axis at an end of a segment.
@@ -36,6 +37,21 @@ impl Form {
         either: 0.0,
         slope: 0.0,
     };
+
+    /// Coefficients of w², w and 1 of the speed w at one end, with the speed `other` at the other;
+    /// `is_own` where the torque is that at this end.
+    fn beside(&self, end: End, other: f64, is_own: bool) -> [f64; 3] {
+        let d = if end == End::From { -self.d } else { self.d };
+        let [mut a, mut b] = [0.25 * (self.c + d), 0.5 * self.c * other];
+        let mut c = 0.25 * (self.c - d) * other * other + self.g;
+        if is_own {
+            a += self.h;
+            b += self.f;
+        } else {
+            c += (self.h * other + self.f) * other;
+        }
+        [a, b, c]
+    }
 
     /// Coefficients of W², W and 1 on the ray of r, where the speed here is the fraction `part` of
     /// W.
@@ -116,37 +132,86 @@ impl<'a, A: Axes> Load<'a, A> {
 
     /// The largest W on the ray of r, up to which all motors have what it takes.
     pub(super) fn widest(&self, r: f64) -> f64 {
-        self.each(r)
-            .fold(f64::INFINITY, |widest, (form, motor, part)| {
-                widest.min(first_lack(
-                    form.on_ray(r, part),
-                    form.slope * part,
-                    form.either,
-                    motor,
-                ))
-            })
+        self.each(r).fold(LARGEST, |widest, (form, motor, part)| {
+            let speed = [0.0, form.slope.abs() * part];
+            first_lack(form.on_ray(r, part), speed, form.either, motor, widest)
+        })
+    }
+
+    /// The speed at one end that is nearest to `wanted` and up to which, from `known` on, all
+    /// motors have what it takes, with the speed `other` at the other end.
+    pub(super) fn farthest(&self, end: End, other: f64, [known, wanted]: [f64; 2]) -> f64 {
+        let toward = 1.0_f64.copysign(wanted - known);
+        let [from, to] = &self.ends;
+        let (own, others) = if end == End::From {
+            (from, to)
+        } else {
+            (to, from)
+        };
+        let mut way = (wanted - known).abs();
+        for (forms, is_own) in [(own, true), (others, false)] {
+            for (form, motor) in A::each(forms).iter().zip(A::each(self.motors)) {
+                let [a, b, c] = form.beside(end, other, is_own);
+                let from_known = [
+                    a,
+                    (2.0 * a * known + b) * toward,
+                    (a * known + b) * known + c,
+                ];
+                let slope = form.slope.abs();
+                let speed = if is_own {
+                    [slope * known, slope * toward]
+                } else {
+                    [slope * other, 0.0]
+                };
+                way = first_lack(from_known, speed, form.either, motor, way);
+            }
+        }
+        known + way * toward
     }
 }
 
-/// The smallest W at which |a W² + b W + c| is above what the motor has left at the speed v W; 0
-/// where it is so at rest.
-fn first_lack([a, b, c]: [f64; 3], v: f64, taken: f64, motor: &TorqueCurve) -> f64 {
-    let v = v.abs();
-    let mut lack = 0.0;
+/// What is left of a torque, for rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// The part of a `way` up to which |a u² + b u + c| is within what a motor has left at the speed
+/// v + rate u.
+fn first_lack(
+    [a, b, c]: [f64; 3],
+    [v, rate]: [f64; 2],
+    taken: f64,
+    motor: &TorqueCurve,
+    way: f64,
+) -> f64 {
+    let mut lack = way;
+    // Beyond the last piece there is no torque.
+    let mut last = 0.0;
     motor.each_piece(|[v0, v1], [t0, t1]| {
-        let fall = if v1 > v0 { (t0 - t1) / (v1 - v0) } else { 0.0 };
-        // On this piece |a W² + b W + c| <= t0 + fall v0 - fall v W, less what is taken.
-        let limit = t0 + fall * v0 - taken;
-        let upper = first_root([a, b + fall * v, c - limit]);
-        let lower = first_root([-a, -b + fall * v, -c - limit]);
-        let root = upper.min(lower);
-        let end = if v1 > v0 { v1 / v } else { lack };
-        // Pieces begin where those before them hold.
-        let is_within = root < end;
-        lack = if is_within { root.max(lack) } else { end };
-        is_within
+        let [begin, end] = if rate > 0.0 {
+            [(v0 - v) / rate, (v1 - v) / rate]
+        } else if rate < 0.0 {
+            [(v1 - v) / rate, (v0 - v) / rate]
+        } else if (v0..=v1).contains(&v) {
+            [0.0, way]
+        } else {
+            return false;
+        };
+        let begin = larger(begin, 0.0);
+        last = larger(last, end);
+        if begin < smaller(end, lack) {
+            let fall = if v1 > v0 { (t0 - t1) / (v1 - v0) } else { 0.0 };
+            let left = (t0 - fall * (v + rate * begin - v0)) * (1.0 - ROUNDING) - taken;
+            let (fall, slope) = (fall * rate, 2.0 * a * begin + b);
+            let torque = (a * begin + b) * begin + c;
+            let upper = first_root([a, slope + fall, torque - left]);
+            let lower = first_root([-a, fall - slope, -torque - left]);
+            let here = begin + smaller(upper, lower);
+            if here < end {
+                lack = smaller(lack, here);
+            }
+        }
+        false
     });
-    lack
+    smaller(lack, last)
 }
 
 /// The smallest root above 0 of a W² + b W + c with c <= 0; 0 where c is above 0, infinite without
@@ -175,9 +240,8 @@ fn forms<A: Axes, D: Dynamics<Axes = A>>(
 ) -> A::Of<Form> {
     let (position, slope) = (&knot.point.position, &knot.point.slope);
     let zeros = A::zeros();
-    let rest = dynamics.torques(position, &zeros, &zeros);
-    let of = |velocity: &A, acceleration: &A| dynamics.torques(position, velocity, acceleration);
-    let (c, d, h) = (of(&zeros, &c), of(&zeros, &d), of(slope, &zeros));
+    let motions = [[zeros, zeros], [zeros, c], [zeros, d], [*slope, zeros]];
+    let [rest, c, d, h] = dynamics.torques_of(position, &motions);
     let friction = dynamics.friction();
     let mut forms = A::filled(Form::NONE);
     let torques = c.as_slice().iter().zip(d.as_slice()).zip(h.as_slice());
@@ -204,4 +268,53 @@ fn forms<A: Axes, D: Dynamics<Axes = A>>(
         };
     }
     forms
+}
+
+#[cfg(test)]
+mod tests {
+    use test_support::Random;
+
+    use super::*;
+
+    /// Places on a way that are looked at.
+    const SAMPLES: u32 = 4000;
+
+    /// Rounding of a torque.
+    const CLOSE: f64 = 1e-9;
+
+    /// A place where a lack shows.
+    const BEYOND: f64 = 1.0 + 1e-6;
+
+    /// Up to the place that is found a motor has what is asked, from there on it has not.
+    #[test]
+    fn a_lack_is_found_at_any_speed() {
+        let mut random = Random::new(1);
+        let mut found = 0;
+        for _ in 0..500 {
+            let points = [[0.0, 3.0], [1.0, 2.5], [1.5, 1.0], [4.0, 0.5]];
+            let motor = TorqueCurve::from_points(&points).unwrap();
+            let torque = [(); 3].map(|()| random.within(-1.5, 1.5));
+            let way = random.within(0.1, 3.0);
+            let from = random.within(0.0, 3.5);
+            let to = random.within(0.0, 4.5);
+            let speed = [from, (to - from) / way];
+            let over = |u: f64| {
+                let [a, b, c] = torque;
+                let has = motor.at(speed[0] + speed[1] * u);
+                ((a * u + b) * u + c).abs() + 0.1 - has
+            };
+            if over(0.0) > -CLOSE {
+                continue;
+            }
+            let lack = first_lack(torque, speed, 0.1, &motor, way);
+            assert!(lack > 0.0 && lack <= way);
+            let sample = |n: u32| lack * f64::from(n) / f64::from(SAMPLES);
+            assert!((0..=SAMPLES).all(|n| over(sample(n)) <= CLOSE));
+            if lack < way {
+                found += 1;
+                assert!(over(lack * BEYOND) > 0.0, "{torque:?} {speed:?}");
+            }
+        }
+        assert!(found > 100, "{found}");
+    }
 }

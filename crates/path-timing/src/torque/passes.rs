@@ -10,22 +10,18 @@ use super::{Dynamics, TorqueLimits};
 use crate::knot::ToolTimes;
 use crate::number::{LARGEST, larger_or_nan, sqrt};
 use crate::reciprocals::Reciprocals;
-use crate::segment::Segment;
+use crate::segment::{End, Segment};
 use crate::{Axes, Knot};
 
 /// The rays of pairs that are chosen for the least time alone: speeds differ by a factor of 8 at
 /// most.
 const STEEPEST: f64 = 7.0 / 9.0;
 
-/// The steepest ray that a motion brakes or starts by.
-const STEEPEST_TO_A_SPEED: f64 = 1.0 - 1e-3;
-
-/// Cuts of an interval of rays in search of the one on which a limit is reached, and what is close
-/// to it.
-const CUTS_OF_A_RAY: u32 = 24;
+/// Cuts of an interval in search of the speed at which a limit is reached, and what is close to it.
+const CUTS_TO_A_LIMIT: u32 = 24;
 const CLOSE: f64 = 1e-8;
 
-/// Cuts of it by the golden ratio.
+/// Cuts of an interval of rays by the golden ratio.
 const CUTS: u32 = 24;
 
 /// (√5 - 1) / 2
@@ -87,12 +83,17 @@ impl<'a, A: Axes> Pair<'a, A> {
         if ceiling <= 0.0 {
             return (self.speed_to_rest().min(cap), 0.0);
         }
-        if cap >= ceiling && self.used(ceiling, ceiling) <= 1.0 {
+        if cap >= ceiling {
             // As fast at the start as it can brake from.
-            let lowest = ((ceiling - cap) / (ceiling + cap)).max(-STEEPEST_TO_A_SPEED);
-            let start = |r: f64| ceiling * (1.0 - r) / (1.0 + r);
-            let r = farthest(0.0, lowest, |r| self.used(start(r), ceiling));
-            return (start(r).min(cap), ceiling);
+            let used = |w0: f64| self.used(w0, ceiling);
+            let wanted = self.axes.highest(End::From, ceiling, cap).max(ceiling);
+            let start = self.load.farthest(End::From, ceiling, [ceiling, wanted]);
+            if used(start) <= 1.0 {
+                return (start, ceiling);
+            }
+            if used(ceiling) <= 1.0 {
+                return (farthest(ceiling, start, used), ceiling);
+            }
         }
         self.shortest([cap, ceiling])
     }
@@ -130,45 +131,44 @@ impl<'a, A: Axes> Pair<'a, A> {
         if ceiling <= 0.0 {
             return 0.0;
         }
-        let ray = |w1: f64| (w1 - w0) / (w1 + w0);
-        let known = w0 * ratio;
-        let highest = ray(ceiling).min(STEEPEST_TO_A_SPEED);
-        let end = |r: f64| w0 * (1.0 + r) / (1.0 - r);
-        let r = farthest(ray(known), highest, |r| self.used(w0, end(r)));
-        end(r).min(ceiling).max(known.min(ceiling))
+        let known = (w0 * ratio).min(ceiling);
+        let wanted = self.axes.end(w0, ceiling, ratio).max(known);
+        let wanted = self.load.farthest(End::To, w0, [known, wanted]);
+        farthest(known, wanted, |w1| self.used(w0, w1))
     }
 }
 
-/// The ray, or the speed, nearest to `wanted` with which no limit is passed, from one with which none
-/// is: by regula falsi, with the value of an end that stays halved (Illinois).
+/// The speed nearest to `wanted` with which no limit is passed, from one with which none is: by
+/// regula falsi, with the value of an end that stays twice halved (Illinois).
 pub(super) fn farthest(known: f64, wanted: f64, used: impl Fn(f64) -> f64) -> f64 {
-    let over = |r: f64| used(r) - 1.0;
+    let over = |speed: f64| used(speed) - 1.0;
     let mut bad = (wanted, over(wanted));
     if bad.1 <= 0.0 {
         return wanted;
     }
     let mut good = (known, over(known));
-    let mut best = known;
-    for _ in 0..CUTS_OF_A_RAY {
+    let (mut best, mut was_good) = (known, None);
+    for _ in 0..CUTS_TO_A_LIMIT {
         let gap = bad.0 - good.0;
-        let r = good.0 - good.1 * gap / (bad.1 - good.1);
-        let r = if (r - good.0) * (r - bad.0) < 0.0 {
-            r
-        } else {
-            good.0 + gap * 0.5
-        };
-        let here = over(r);
-        if here <= 0.0 {
-            best = r;
+        let cut = good.0 - good.1 * gap / (bad.1 - good.1);
+        let is_between = (cut - good.0) * (cut - bad.0) < 0.0;
+        let speed = if is_between { cut } else { good.0 + gap * 0.5 };
+        let here = over(speed);
+        let is_good = here <= 0.0;
+        if is_good {
+            best = speed;
             if here > -CLOSE {
                 break;
             }
-            good = (r, here);
-            bad.1 *= 0.5;
+            good = (speed, here);
         } else {
-            bad = (r, here);
-            good.1 *= 0.5;
+            bad = (speed, here);
         }
+        if was_good == Some(is_good) {
+            let stays = if is_good { &mut bad } else { &mut good };
+            stays.1 *= 0.5;
+        }
+        was_good = Some(is_good);
     }
     best
 }

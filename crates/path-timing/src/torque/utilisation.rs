@@ -5,10 +5,10 @@ use crate::number::larger_or_nan;
 use crate::{Axes, Cubic, Row, Span};
 
 /// Parts that a segment is looked at in, and more where these leave much open.
-const PARTS: [u32; 3] = [4, 16, 64];
+const PARTS: [u32; 4] = [1, 4, 16, 64];
 
 /// What may be left open: half of it in time.
-const OPEN: f64 = 5e-4;
+const OPEN: f64 = 5e-5;
 
 impl<D: Dynamics> TorqueLimits<D> {
     /// The largest part of what a motor has at its speed that is asked of any motor anywhere on a

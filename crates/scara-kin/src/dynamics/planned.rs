@@ -67,6 +67,17 @@ impl Dynamics for ArmDynamics {
             .into()
     }
 
+    fn torques_of<const N: usize>(
+        &self,
+        &[shoulder, elbow]: &[f64; 2],
+        motions: &[[[f64; 2]; 2]; N],
+    ) -> [[f64; 2]; N] {
+        let posture = self.posture(Joints::new(shoulder, elbow));
+        motions.map(|[rates, accelerations]| {
+            posture.torques(rates.into(), accelerations.into()).into()
+        })
+    }
+
     fn friction(&self) -> [Friction; 2] {
         [self.masses().shoulder, self.masses().elbow].map(|drive| Friction {
             viscous: drive.viscous_nm_s,

@@ -108,8 +108,8 @@ fn a_segment_that_no_motor_can_bear_is_refused_at_rest() {
         ..masses(3.0)
     };
     let dynamics = arm().dynamics(1e-3, upright).unwrap();
-    // Stretched out to the side it needs 32 Nm and more.
-    let motors = [28.0, 25.0].map(|torque| TorqueCurve::constant(torque, 20.0).unwrap());
+    // At rest at its end the arm needs 27.3 Nm, of which friction may carry 0.8.
+    let motors = [26.0, 25.0].map(|torque| TorqueCurve::constant(torque, 20.0).unwrap());
     let weak = TorqueLimits { dynamics, motors };
     let path = line([[60.0, 300.0], [520.0, 200.0]]);
     let mut window = [Knot::default(); 64];
