@@ -24,7 +24,8 @@ pub struct Knot<A: Axes> {
     pub(crate) speed: f64,
     /// Speed at the next knot that goes with the highest here, as a ratio.
     pub(crate) ratio: f64,
-    /// The highest speed at a feed below the highest.
+    /// The highest speed at a feed below the highest; in a table within torques, which has no other
+    /// feed, the share of them that the segment before is planned with.
     pub(crate) wanted: f64,
     /// The parameter at which it is to stand instead.
     pub(crate) moved_s: f64,

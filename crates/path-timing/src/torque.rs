@@ -3,7 +3,8 @@
 //! Goal: the fastest speeds along paths with which no motor gives more torque than it has at its
 //! speed, on the cubics themselves. Method: at both ends of a segment a torque is a form of the
 //! speeds there; a backward and a forward pass choose these. Then the torque of each cubic is
-//! bounded all along it, and the whole is slowed by the little that is missing.
+//! bounded all along it, segments that ask for more are planned anew with less of it, and the whole
+//! is slowed by the little that is missing.
 
 mod curve;
 mod laden;
@@ -18,7 +19,8 @@ pub use look_ahead::TorqueLookAhead;
 pub use table::TorqueTable;
 
 use crate::number::sqrt;
-use crate::{Axes, Cubic, Span};
+use crate::passes::time_of;
+use crate::{Axes, Cubic, Knot, Row, Span};
 
 /// What a machine's axes weigh against a motion: its inverse dynamics. Torques of axes in radians
 /// are in Nm, forces of axes in metres in N; in any unit that goes with the axes', the same
@@ -129,11 +131,11 @@ enum Lack {
     Torque,
 }
 
-/// A speed, as a part of the planned one, at which no more than 1 is `asked` of a motor.
-fn slowed(mut asked: impl FnMut(f64) -> f64) -> Result<f64, Lack> {
+/// A speed, as a part of the planned one, at which no more than 1 is `asked` of a motor, where at
+/// the planned one it is `most`.
+fn slowed(mut most: f64, asked: impl Fn(f64) -> f64) -> Result<f64, Lack> {
     let (mut speed, mut more) = (1.0, MORE);
     for _ in 0..ROUNDS {
-        let most = asked(speed);
         if most <= 1.0 {
             return Ok(speed);
         }
@@ -143,8 +145,21 @@ fn slowed(mut asked: impl FnMut(f64) -> f64) -> Result<f64, Lack> {
         // Inertia asks for the square of the speed; friction and gravity do not.
         speed /= sqrt(1.0 + (most - 1.0) * more + f64::EPSILON);
         more *= MORE;
+        most = asked(speed);
     }
     Err(Lack::Torque)
+}
+
+/// The segment between two knots that are passed at these speeds.
+fn between<A: Axes>([from, to]: [&Knot<A>; 2], [w0, w1]: [f64; 2]) -> Span<A> {
+    let to = Row {
+        duration_s: time_of(to.ds, [w0, w1]),
+        ..to.row(w1)
+    };
+    Span {
+        s: [from.next_start(), to.s],
+        rows: [from.row(w0), to],
+    }
 }
 
 /// The sign of a speed, or at rest that of the speed at the other end of a segment.

@@ -5,7 +5,7 @@
 //! is slowed, or the speed at the end brought nearer to one that is known to hold.
 
 use super::passes::{Pair as Ends, farthest};
-use super::{Dynamics, TorqueLimits, slowed};
+use super::{Dynamics, TorqueLimits, between, slowed};
 use crate::knot::{SegmentTool, ToolTimes};
 use crate::number::larger_or_nan;
 use crate::reciprocals::Reciprocals;
@@ -54,7 +54,7 @@ impl<'a, D: Dynamics> Pairs<D::Axes> for Laden<'a, D> {
         tool_times: ToolTimes,
     ) -> LadenPair<'a, D> {
         LadenPair {
-            ends: Ends::new(self.0, limits, [from, to], tool_times),
+            ends: Ends::new(self.0, 1.0, limits, [from, to], tool_times),
             torque: self.0,
             knots: [*from, *to],
         }
@@ -68,7 +68,7 @@ impl<'a, D: Dynamics> Pairs<D::Axes> for Laden<'a, D> {
     ) -> f64 {
         let own = passes::rest_to_rest_s(limits, knots, tool);
         let asked = |slowness: f64| self.0.utilisation(&resting(knots, own * slowness));
-        let speed = slowed(|speed| asked(1.0 / speed));
+        let speed = slowed(asked(1.0), |speed| asked(1.0 / speed));
         speed.map_or(f64::INFINITY, |speed| own / speed)
     }
 }
@@ -82,16 +82,9 @@ pub(super) struct LadenPair<'a, D: Dynamics> {
 
 impl<D: Dynamics> LadenPair<'_, D> {
     /// The largest part of a motor's torque on the cubic.
-    fn asked(&self, [w0, w1]: [f64; 2]) -> f64 {
+    fn asked(&self, speeds: [f64; 2]) -> f64 {
         let [from, to] = &self.knots;
-        let to = Row {
-            duration_s: passes::time_of(to.ds, [w0, w1]),
-            ..to.row(w1)
-        };
-        self.torque.utilisation(&Span {
-            s: [from.next_start(), to.s],
-            rows: [from.row(w0), to],
-        })
+        self.torque.utilisation(&between([from, to], speeds))
     }
 
     /// The pair, or the fastest slower one of the same ratio that is found; at rest where there is
@@ -104,7 +97,7 @@ impl<D: Dynamics> LadenPair<'_, D> {
                 0.0
             }
         };
-        let speed = slowed(asked).unwrap_or(0.0);
+        let speed = slowed(asked(1.0), asked).unwrap_or(0.0);
         (w0 * speed, w1 * speed)
     }
 

@@ -69,11 +69,14 @@ impl Form {
 pub(super) struct Load<'a, A: Axes> {
     ends: [A::Of<Form>; 2],
     motors: &'a A::Of<TorqueCurve>,
+    /// The share of their torques that is planned with.
+    share: f64,
 }
 
 impl<'a, A: Axes> Load<'a, A> {
     pub(super) fn new<D: Dynamics<Axes = A>>(
         limits: &'a TorqueLimits<D>,
+        share: f64,
         from: &Knot<A>,
         to: &Knot<A>,
     ) -> Self {
@@ -99,6 +102,7 @@ impl<'a, A: Axes> Load<'a, A> {
             ends: ends
                 .map(|(here, there, vectors)| forms(&limits.dynamics, [here, there], vectors)),
             motors: &limits.motors,
+            share,
         }
     }
 
@@ -122,7 +126,7 @@ impl<'a, A: Axes> Load<'a, A> {
             let torque = ((a * sum + b) * sum + c).abs() + form.either;
             // Not a number where a motor has nothing and nothing is asked.
             let used = if torque > 0.0 {
-                torque / motor.at(form.slope * part * sum)
+                torque / (motor.at(form.slope * part * sum) * self.share)
             } else {
                 0.0
             };
@@ -134,7 +138,13 @@ impl<'a, A: Axes> Load<'a, A> {
     pub(super) fn widest(&self, r: f64) -> f64 {
         self.each(r).fold(LARGEST, |widest, (form, motor, part)| {
             let speed = [0.0, form.slope.abs() * part];
-            first_lack(form.on_ray(r, part), speed, form.either, motor, widest)
+            first_lack(
+                form.on_ray(r, part),
+                speed,
+                form.either,
+                self.motor(motor),
+                widest,
+            )
         })
     }
 
@@ -163,23 +173,28 @@ impl<'a, A: Axes> Load<'a, A> {
                 } else {
                     [slope * other, 0.0]
                 };
-                way = first_lack(from_known, speed, form.either, motor, way);
+                way = first_lack(from_known, speed, form.either, self.motor(motor), way);
             }
         }
         known + way * toward
+    }
+
+    /// A motor, and the share of its torque up to which a limit is looked for.
+    const fn motor<'m>(&self, motor: &'m TorqueCurve) -> (&'m TorqueCurve, f64) {
+        (motor, self.share * (1.0 - ROUNDING))
     }
 }
 
 /// What is left of a torque, for rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The part of a `way` up to which |a u² + b u + c| is within what a motor has left at the speed
-/// v + rate u.
+/// The part of a `way` up to which |a u² + b u + c| is within what a share of a motor's torque has
+/// left at the speed v + rate u.
 fn first_lack(
     [a, b, c]: [f64; 3],
     [v, rate]: [f64; 2],
     taken: f64,
-    motor: &TorqueCurve,
+    (motor, share): (&TorqueCurve, f64),
     way: f64,
 ) -> f64 {
     let mut lack = way;
@@ -198,8 +213,12 @@ fn first_lack(
         let begin = larger(begin, 0.0);
         last = larger(last, end);
         if begin < smaller(end, lack) {
-            let fall = if v1 > v0 { (t0 - t1) / (v1 - v0) } else { 0.0 };
-            let left = (t0 - fall * (v + rate * begin - v0)) * (1.0 - ROUNDING) - taken;
+            let fall = if v1 > v0 {
+                (t0 - t1) / (v1 - v0) * share
+            } else {
+                0.0
+            };
+            let left = t0 * share - fall * (v + rate * begin - v0) - taken;
             let (fall, slope) = (fall * rate, 2.0 * a * begin + b);
             let torque = (a * begin + b) * begin + c;
             let upper = first_root([a, slope + fall, torque - left]);
@@ -306,7 +325,7 @@ mod tests {
             if over(0.0) > -CLOSE {
                 continue;
             }
-            let lack = first_lack(torque, speed, 0.1, &motor, way);
+            let lack = first_lack(torque, speed, 0.1, (&motor, 1.0), way);
             assert!(lack > 0.0 && lack <= way);
             let sample = |n: u32| lack * f64::from(n) / f64::from(SAMPLES);
             assert!((0..=SAMPLES).all(|n| over(sample(n)) <= CLOSE));

@@ -36,17 +36,18 @@ pub(super) struct Pair<'a, A: Axes> {
 impl<'a, A: Axes> Pair<'a, A> {
     pub(super) fn new<D: Dynamics<Axes = A>>(
         torque: &'a TorqueLimits<D>,
+        share: f64,
         limits: &Reciprocals<A>,
         [from, to]: [&Knot<A>; 2],
         tool_times: ToolTimes,
     ) -> Self {
         Self {
             axes: Segment::new(limits, from, to, tool_times),
-            load: Load::new(torque, from, to),
+            load: Load::new(torque, share, from, to),
         }
     }
 
-    /// The largest part of a limit that a pair of speeds takes.
+    /// The largest part of a limit, or of a share of a torque, that a pair of speeds takes.
     pub(super) fn used(&self, w0: f64, w1: f64) -> f64 {
         larger_or_nan(self.axes.load(w0, w1), self.load.used(w0, w1))
     }
@@ -173,12 +174,15 @@ pub(super) fn farthest(known: f64, wanted: f64, used: impl Fn(f64) -> f64) -> f6
     best
 }
 
-/// Gives the knots the speeds of the fastest motion with which no knot passes its cap.
+/// Gives the knots the speeds of the fastest motion with which no knot passes its cap, and no motor
+/// its share of a torque at the ends of a segment.
 pub(super) fn fastest<D: Dynamics>(
     torque: &TorqueLimits<D>,
     limits: &Reciprocals<D::Axes>,
     knots: &mut [Knot<D::Axes>],
 ) {
+    let pair =
+        |from: &_, to: &Knot<_>| Pair::new(torque, to.wanted, limits, [from, to], ToolTimes::ONE);
     let mut earlier = knots.iter_mut().rev();
     let Some(mut to) = earlier.next() else {
         return;
@@ -186,8 +190,7 @@ pub(super) fn fastest<D: Dynamics>(
     to.speed = to.cap.min(LARGEST);
     for from in earlier {
         (from.speed, from.ratio) = if to.ds > 0.0 {
-            let (w0, w1) =
-                Pair::new(torque, limits, [from, to], ToolTimes::ONE).begin(to.speed, from.cap);
+            let (w0, w1) = pair(from, to).begin(to.speed, from.cap);
             (w0, if w0 > 0.0 { w1 / w0 } else { 0.0 })
         } else {
             (to.speed.min(from.cap), 1.0)
@@ -200,8 +203,7 @@ pub(super) fn fastest<D: Dynamics>(
     };
     for to in rest {
         to.speed = if to.ds > 0.0 {
-            let pair = Pair::new(torque, limits, [from, to], ToolTimes::ONE);
-            pair.end(from.speed, to.speed, from.ratio)
+            pair(from, to).end(from.speed, to.speed, from.ratio)
         } else {
             from.speed
         };

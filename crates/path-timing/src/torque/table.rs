@@ -2,7 +2,7 @@
 
 use core::cell::Cell;
 
-use super::{Dynamics, Lack, TorqueLimits, passes, slowed};
+use super::{Dynamics, Lack, MORE, TorqueLimits, between, passes, slowed};
 use crate::departure::{Speeds, Within};
 use crate::number::larger_or_nan;
 use crate::passes::segment_s;
@@ -124,28 +124,89 @@ impl<D: Dynamics> TorqueLimits<D> {
 
     /// Finds the speeds of knots; by what the table is then slowed, and its time. None where
     /// segments are so long that nothing is known of the torques between their ends.
+    ///
+    /// Segments that ask for more between their ends are planned anew with less of the torques,
+    /// until the rest is little, and slowing the whole costs as little: where gravity helps a fast
+    /// motion, a slower one asks for more.
     fn time<E>(
         &self,
         limits: &Reciprocals<D::Axes>,
         knots: &mut [Knot<D::Axes>],
     ) -> Result<Option<[f64; 2]>, PlanError<E>> {
-        passes::fastest(self, limits, knots);
-        let duration_s = check_moves(knots)?;
-        let table = Table::new(knots, *limits, duration_s);
-        let found = slowed(|speed| {
-            let slower = table.at_speed(speed);
-            slower.map_or(f64::NAN, |table| {
-                let spans = table.spans().map(|span| self.utilisation(&span));
-                spans.fold(0.0, larger_or_nan)
-            })
-        });
-        match found.map(|speed| table.at_speed(speed)) {
-            Ok(Ok(table)) => Ok(Some([table.stretch, table.duration_s()])),
+        leave_all(knots);
+        for _ in 0..ROUNDS_OF_SHARES {
+            passes::fastest(self, limits, knots);
+            let Ok(duration_s) = check_moves::<_, E>(knots) else {
+                leave_all(knots);
+                passes::fastest(self, limits, knots);
+                break;
+            };
+            let most = self.lower_shares(knots);
+            if most <= 1.0 + LITTLE {
+                let table = Table::new(knots, *limits, duration_s);
+                let slower = self.slow(&table, most);
+                if let Some(slower) = slower.ok().filter(|slower| slower[0] <= 1.0 + LITTLE) {
+                    return Ok(Some(slower));
+                }
+            }
+        }
+        let table = Table::new(knots, *limits, check_moves(knots)?);
+        match self.slow(&table, self.asked(&table)) {
+            Ok(slower) => Ok(Some(slower)),
             Err(Lack::Unknown) => Ok(None),
-            _ => Err(overload(knots)),
+            Err(Lack::Torque) => Err(overload(knots)),
         }
     }
+
+    /// By what a table that asks for so much at `most` is slowed until no motor lacks torque, and
+    /// its time then.
+    fn slow(&self, table: &Table<'_, D::Axes>, most: f64) -> Result<[f64; 2], Lack> {
+        let slower = |speed| table.at_speed(speed);
+        let speed = slowed(most, |speed| {
+            slower(speed).map_or(f64::NAN, |table| self.asked(&table))
+        })?;
+        let table = slower(speed).map_err(|_| Lack::Torque)?;
+        Ok([table.stretch, table.duration_s()])
+    }
+
+    /// The largest part of its torque that a motor is asked for.
+    fn asked(&self, table: &Table<'_, D::Axes>) -> f64 {
+        let spans = table.spans().map(|span| self.utilisation(&span));
+        spans.fold(0.0, larger_or_nan)
+    }
+
+    /// Leaves each segment the share of the torques with which it would have asked for no more than
+    /// there is. What was asked at most, as a part of what there is.
+    fn lower_shares(&self, knots: &mut [Knot<D::Axes>]) -> f64 {
+        let mut most = 0.0;
+        let mut rest = knots.iter_mut();
+        let Some(mut from) = rest.next() else {
+            return most;
+        };
+        for to in rest {
+            if to.ds > 0.0 {
+                let asked = self.utilisation(&between([from, to], [from.speed, to.speed]));
+                to.wanted /= 1.0 + (asked - 1.0).max(0.0) * MORE;
+                most = larger_or_nan(most, asked);
+            }
+            from = to;
+        }
+        most
+    }
 }
+
+/// Leaves each segment all of the torques.
+fn leave_all<A: Axes>(knots: &mut [Knot<A>]) {
+    for knot in knots {
+        knot.wanted = 1.0;
+    }
+}
+
+/// Rounds in which segments are left less of the torques.
+const ROUNDS_OF_SHARES: u32 = 8;
+
+/// A part of a torque, or of the speed, by which a whole table is slowed.
+const LITTLE: f64 = 1e-3;
 
 /// The time of the knots' speeds, all of which let the machine move.
 fn check_moves<A: Axes, E>(knots: &[Knot<A>]) -> Result<f64, PlanError<E>> {

@@ -1,5 +1,6 @@
 //! Limits of torque: curves of motors, the tables of an arm against other derivations.
 
+mod monotonic;
 mod streams;
 
 use core::fmt::Write as _;
