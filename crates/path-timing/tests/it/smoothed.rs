@@ -183,6 +183,21 @@ fn points_that_coincide_are_one() {
     assert!(smoothed::<2>(&[], 0.1).is_empty());
 }
 
+/// A last point beside the one before by what rounding makes of it: it was refused as a curve that
+/// has no direction.
+#[test]
+fn a_last_point_beside_the_one_before_is_the_end() {
+    for tolerance in [0.0, 1e-12, 0.01] {
+        for last in [[10.0, 20.0 + 1e-14], [10.0 - 2e-15, 20.0], [10.0, 20.0]] {
+            let points = [[0.0, 0.0], [10.0, 0.0], [10.0, 20.0], last];
+            let curves = smoothed(&points, tolerance);
+            check_joined(&curves, if tolerance < 0.01 { 1 } else { 0 });
+            let curve = curves.last().unwrap();
+            assert_eq!(bits(curve.end()), bits(last));
+        }
+    }
+}
+
 /// Straight back is a stop; so are turns above what is asked for, and all with no tolerance.
 #[test]
 fn sharp_corners_are_stops() {

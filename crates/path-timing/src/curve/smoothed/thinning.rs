@@ -102,8 +102,11 @@ impl<const D: usize> Thinning<D> {
             let thinned = self.start_departs;
             return [None, is_other.then_some(Point { thinned, ..*last })];
         };
-        let is_other = norm(&difference(&last.at, &to.at)) > 0.0;
-        let kept = (is_other && !self.extend(&from, *last)).then_some(to);
+        let by = norm(&difference(&last.at, &to.at));
+        let is_other = by > 0.0 && !self.extend(&from, *last);
+        // Between points that differ by rounding there is no edge: it ends in the last.
+        let is_rounded = by <= ROUNDED * norm(&to.at) && !self.is_same(&last.at, &from);
+        let kept = (is_other && !is_rounded).then_some(to);
         let thinned = self.to.map_or(0.0, |to| to.thinned);
         [kept, Some(Point { thinned, ..*last })]
     }
