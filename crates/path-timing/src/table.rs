@@ -83,7 +83,9 @@ impl<'a, A: Axes> Table<'a, A> {
     /// As [`plan`](Self::plan), for processors that compute in `f32` alone: speeds are found in
     /// single precision, positions and times stay in double. It takes a tenth of the instructions
     /// there, and the limits are kept as ever, with the margin that the rounding of `f32` asks for:
-    /// less than 1 % of the time. Where an axis has a limit of jerk it is `plan`.
+    /// less than 1 % of the time. Segments that are too long for their bend lose more, as they are not
+    /// stretched for it: of 98 of 100 random motions up to 1.4 %, of the worst a third. Where an axis
+    /// has a limit of jerk it is `plan`.
     ///
     /// Limits and lengths are to be within 1e-8 to 1e8.
     ///

@@ -18,6 +18,7 @@ mod optimum;
 mod run;
 mod set_points;
 mod shaper;
+mod single;
 mod slow_corners;
 mod smoothed;
 mod smoothed_jerk;
