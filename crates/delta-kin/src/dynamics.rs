@@ -126,17 +126,7 @@ impl<T: RealField + Trig> DeltaDynamics<T> {
             };
             masses.viscous_nm_s * rate + coulomb
         });
-        Ok(self.frictionless(pose, rates, accelerations)? + friction)
-    }
-
-    /// The torques without friction.
-    fn frictionless(
-        &self,
-        pose: &Pose<T>,
-        rates: Vector3<T>,
-        accelerations: Vector3<T>,
-    ) -> Result<Vector3<T>, PoseError<T>> {
-        Ok(self.posture(pose)?.torques(rates, accelerations))
+        Ok(self.posture(pose)?.torques(rates, accelerations) + friction)
     }
 
     /// What the torques of all motions through a pose have in common.

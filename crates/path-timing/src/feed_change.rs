@@ -122,7 +122,8 @@ impl SmoothFeed {
 
 impl<A: Axes> Course<'_, A> {
     /// The shortest change found, by a shape of the feed or by phases of any length, that keeps all
-    /// limits and can be followed by a constant feed: over 1, 2, 3, 5, 8 .. segments, then fewer by halves.
+    /// limits and can be followed by a constant feed: over 1, 2, 3, 5, 8 .. segments, then fewer by
+    /// halves.
     fn by_shape(&self, at: At, from: f64, to: f64) -> Option<Change> {
         let (mut too_few, mut segments) = (0_usize, 1_usize);
         let mut found = loop {

@@ -25,7 +25,7 @@ pub struct Knot<A: Axes> {
     /// Speed at the next knot that goes with the highest here, as a ratio.
     pub(crate) ratio: f64,
     /// The highest speed at a feed below the highest; in a table within torques, which has no other
-    /// feed, the share of them that the segment before is planned with.
+    /// feed, its [`share`](Self::share).
     pub(crate) wanted: f64,
     /// The parameter at which it is to stand instead.
     pub(crate) moved_s: f64,
@@ -141,6 +141,15 @@ impl<A: Axes> Knot<A> {
             cap: 0.0,
             ..Self::default()
         }
+    }
+
+    /// In a table within torques: the share of them that the segment before is planned with.
+    pub(crate) const fn share(&self) -> f64 {
+        self.wanted
+    }
+
+    pub(crate) const fn set_share(&mut self, share: f64) {
+        self.wanted = share;
     }
 
     /// The parameter at which the segment after it begins.

@@ -19,7 +19,6 @@ pub use look_ahead::TorqueLookAhead;
 pub use table::TorqueTable;
 
 use crate::number::sqrt;
-use crate::passes::time_of;
 use crate::{Axes, Cubic, Knot, Row, Span};
 
 /// What a machine's axes weigh against a motion: its inverse dynamics. Torques of axes in radians
@@ -151,9 +150,9 @@ fn slowed(mut most: f64, asked: impl Fn(f64) -> f64) -> Result<f64, Lack> {
 }
 
 /// The segment between two knots that are passed at these speeds.
-fn between<A: Axes>([from, to]: [&Knot<A>; 2], [w0, w1]: [f64; 2]) -> Span<A> {
+fn between<A: Axes>([from, to]: [&Knot<A>; 2], [w0, w1]: [f64; 2], duration_s: f64) -> Span<A> {
     let to = Row {
-        duration_s: time_of(to.ds, [w0, w1]),
+        duration_s,
         ..to.row(w1)
     };
     Span {

@@ -138,7 +138,7 @@ impl<T: RealField + Trig> ArmDynamics<T> {
         rates: Vector2<T>,
         accelerations: Vector2<T>,
     ) -> Vector2<T> {
-        let frictionless = self.frictionless(joints, rates, accelerations);
+        let frictionless = self.posture(joints).torques(rates, accelerations);
         let friction = |drive: &JointDrive<T>, rate: T| {
             let coulomb = if rate == T::zero() {
                 T::zero()
@@ -156,16 +156,6 @@ impl<T: RealField + Trig> ArmDynamics<T> {
             shoulder: &self.masses.shoulder,
             elbow: &self.masses.elbow,
         }
-    }
-
-    /// The torques without friction.
-    fn frictionless(
-        &self,
-        joints: Joints<T>,
-        rates: Vector2<T>,
-        accelerations: Vector2<T>,
-    ) -> Vector2<T> {
-        self.posture(joints).torques(rates, accelerations)
     }
 
     /// What the torques of all motions through a pose have in common.

@@ -11,7 +11,7 @@ use crate::number::larger_or_nan;
 use crate::reciprocals::Reciprocals;
 use crate::segment::GROWTH;
 use crate::stepping::{Pair, Pairs};
-use crate::{Axes, Knot, Row, Span, passes};
+use crate::{Axes, Knot, passes};
 
 /// The parts of a speed at the end of a segment that are tried where it is too high for a motor.
 const BRAKING: [f64; 8] = [0.999, 0.99, 0.97, 0.9, 0.75, 0.5, 0.25, 0.0];
@@ -27,20 +27,8 @@ impl<D: Dynamics> Laden<'_, D> {
         knots: [&Knot<D::Axes>; 2],
     ) -> bool {
         let slow = passes::rest_to_rest_s(limits, knots, &SegmentTool::NONE);
-        let bend = self.0.dynamics.bend(&resting(knots, slow));
+        let bend = self.0.dynamics.bend(&between(knots, [0.0; 2], slow));
         bend.as_slice().iter().all(|bend| bend.is_finite())
-    }
-}
-
-/// From rest to rest in a time.
-fn resting<A: Axes>([from, to]: [&Knot<A>; 2], duration_s: f64) -> Span<A> {
-    let to = Row {
-        duration_s,
-        ..to.row(0.0)
-    };
-    Span {
-        s: [from.next_start(), to.s],
-        rows: [from.row(0.0), to],
     }
 }
 
@@ -67,7 +55,10 @@ impl<'a, D: Dynamics> Pairs<D::Axes> for Laden<'a, D> {
         tool: &SegmentTool,
     ) -> f64 {
         let own = passes::rest_to_rest_s(limits, knots, tool);
-        let asked = |slowness: f64| self.0.utilisation(&resting(knots, own * slowness));
+        let asked = |slowness: f64| {
+            self.0
+                .utilisation(&between(knots, [0.0; 2], own * slowness))
+        };
         let speed = slowed(asked(1.0), |speed| asked(1.0 / speed));
         speed.map_or(f64::INFINITY, |speed| own / speed)
     }
@@ -84,7 +75,9 @@ impl<D: Dynamics> LadenPair<'_, D> {
     /// The largest part of a motor's torque on the cubic.
     fn asked(&self, speeds: [f64; 2]) -> f64 {
         let [from, to] = &self.knots;
-        self.torque.utilisation(&between([from, to], speeds))
+        let duration_s = passes::time_of(to.ds, speeds);
+        self.torque
+            .utilisation(&between([from, to], speeds, duration_s))
     }
 
     /// The pair, or the fastest slower one of the same ratio that is found; at rest where there is

@@ -182,7 +182,7 @@ pub(super) fn fastest<D: Dynamics>(
     knots: &mut [Knot<D::Axes>],
 ) {
     let pair =
-        |from: &_, to: &Knot<_>| Pair::new(torque, to.wanted, limits, [from, to], ToolTimes::ONE);
+        |from: &_, to: &Knot<_>| Pair::new(torque, to.share(), limits, [from, to], ToolTimes::ONE);
     let mut earlier = knots.iter_mut().rev();
     let Some(mut to) = earlier.next() else {
         return;

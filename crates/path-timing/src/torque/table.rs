@@ -185,8 +185,10 @@ impl<D: Dynamics> TorqueLimits<D> {
         };
         for to in rest {
             if to.ds > 0.0 {
-                let asked = self.utilisation(&between([from, to], [from.speed, to.speed]));
-                to.wanted /= 1.0 + (asked - 1.0).max(0.0) * MORE;
+                let speeds = [from.speed, to.speed];
+                let span = between([from, to], speeds, segment_s(from, to));
+                let asked = self.utilisation(&span);
+                to.set_share(to.share() / (1.0 + (asked - 1.0).max(0.0) * MORE));
                 most = larger_or_nan(most, asked);
             }
             from = to;
@@ -198,7 +200,7 @@ impl<D: Dynamics> TorqueLimits<D> {
 /// Leaves each segment all of the torques.
 fn leave_all<A: Axes>(knots: &mut [Knot<A>]) {
     for knot in knots {
-        knot.wanted = 1.0;
+        knot.set_share(1.0);
     }
 }
 

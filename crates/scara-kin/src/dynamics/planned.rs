@@ -58,13 +58,12 @@ impl Dynamics for ArmDynamics {
 
     fn torques(
         &self,
-        &[shoulder, elbow]: &[f64; 2],
+        position: &[f64; 2],
         velocity: &[f64; 2],
         acceleration: &[f64; 2],
     ) -> [f64; 2] {
-        let joints = Joints::new(shoulder, elbow);
-        self.frictionless(joints, (*velocity).into(), (*acceleration).into())
-            .into()
+        let [torques] = self.torques_of(position, &[[*velocity, *acceleration]]);
+        torques
     }
 
     fn torques_of<const N: usize>(
