@@ -271,9 +271,15 @@ impl<P: Path> Place<'_, P> {
                 Err(refused) => return Err(refused),
             }
         }
-        self.check_resolved(limits, knots.get(..count).unwrap_or_default())?;
         let more = u32::try_from(count.saturating_sub(least)).unwrap_or(u32::MAX);
-        Ok(segments.saturating_add(more))
+        let laid = segments.saturating_add(more);
+        let gap = if laid > MIN_BETWEEN_SLOW_ENDS {
+            LARGEST_GAP
+        } else {
+            LARGEST_GAP_AT_RESTS
+        };
+        self.check_known(laid, knots, |from, to| is_resolved(limits, from, to, gap))?;
+        Ok(laid)
     }
 
     /// Moves knots by one from an index on, for one more at a place with its speed.
@@ -300,20 +306,16 @@ impl<P: Path> Place<'_, P> {
         Ok(())
     }
 
-    /// Refuses knots between which the path is not known.
-    fn check_resolved<R: Real>(
+    /// Refuses segments of the leg between whose knots something is not known.
+    pub(crate) fn check_known(
         &self,
-        limits: &Reciprocals<P::Axes, R>,
+        segments: u32,
         knots: &[Knot<P::Axes>],
+        is_known: impl Fn(&Knot<P::Axes>, &Knot<P::Axes>) -> bool,
     ) -> Result<(), PlanError<P::Error>> {
         let mut from = Knot::start(self.start);
-        let gap = if knots.len() > knots_of(MIN_BETWEEN_SLOW_ENDS) {
-            LARGEST_GAP
-        } else {
-            LARGEST_GAP_AT_RESTS
-        };
-        for to in knots.iter().skip(1) {
-            if !is_resolved(limits, &from, to, gap) {
+        for to in knots.iter().take(knots_of(segments)).skip(1) {
+            if !is_known(&from, to) {
                 let (leg, s) = (self.leg.number, from.s);
                 return Err(PlanError::TooCoarse { leg, s });
             }

@@ -18,8 +18,9 @@ pub use curve::{TorqueCurve, TorqueCurveError};
 pub use look_ahead::TorqueLookAhead;
 pub use table::TorqueTable;
 
+use crate::knots::span_in_a_second;
 use crate::number::sqrt;
-use crate::{Axes, Cubic, Knot, Row, Span};
+use crate::{Axes, Cubic, Knot, Span};
 
 /// What a machine's axes weigh against a motion: its inverse dynamics. Torques of axes in radians
 /// are in Nm, forces of axes in metres in N; in any unit that goes with the axes', the same
@@ -113,6 +114,16 @@ impl<D: Dynamics> TorqueLimits<D> {
             torques
         })
     }
+
+    /// Whether the torques between two knots are known, whatever the speeds there: axes turn
+    /// farthest where one of them is a rest.
+    fn is_known(&self, from: &Knot<D::Axes>, to: &Knot<D::Axes>) -> bool {
+        [0.0, 2.0].iter().all(|start| {
+            let span = span_in_a_second([from, to], *start);
+            let bend = self.dynamics.bend(&span);
+            bend.as_slice().iter().all(|bend| bend.is_finite())
+        })
+    }
 }
 
 /// By how much more than inertia asks for a motion is slowed: enough at once where friction and
@@ -147,18 +158,6 @@ fn slowed(mut most: f64, asked: impl Fn(f64) -> f64) -> Result<f64, Lack> {
         most = asked(speed);
     }
     Err(Lack::Torque)
-}
-
-/// The segment between two knots that are passed at these speeds.
-fn between<A: Axes>([from, to]: [&Knot<A>; 2], [w0, w1]: [f64; 2], duration_s: f64) -> Span<A> {
-    let to = Row {
-        duration_s,
-        ..to.row(w1)
-    };
-    Span {
-        s: [from.next_start(), to.s],
-        rows: [from.row(w0), to],
-    }
 }
 
 /// The sign of a speed, or at rest that of the speed at the other end of a segment.

@@ -233,6 +233,9 @@ impl<'w, A: Axes> Window<'w, A> {
             return None;
         };
         let times = ToolTimes::of_feed(feed.max);
+        let rest_to_rest_s = |from: &Knot<A>, to: &Knot<A>| {
+            pairs.rest_to_rest_s(limits, [from, to], &to.tool.times(times)) / feed.wanted.min(1.0)
+        };
         let next = if to.ds > 0.0 {
             let segment = pairs.of(limits, [from, to], times);
             let later = later.first().filter(|later| later.ds > 0.0);
@@ -244,7 +247,13 @@ impl<'w, A: Axes> Window<'w, A> {
                 ratio: from.ratio,
             };
             if feed.wanted > 0.0 {
-                ahead.toward(speed, to.wanted)
+                let next = ahead.toward(speed, to.wanted);
+                let crawls = self.crawls([speed, next], rest_to_rest_s);
+                if crawls && segment.holds(speed, 0.0) {
+                    0.0
+                } else {
+                    next
+                }
             } else {
                 ahead.hold(speed)
             }
@@ -254,11 +263,28 @@ impl<'w, A: Axes> Window<'w, A> {
         let duration_s = if to.ds <= 0.0 || speed + next > 0.0 {
             time_of(to.ds, [speed, next])
         } else if feed.wanted > 0.0 {
-            pairs.rest_to_rest_s(limits, [from, to], &to.tool.times(times)) / feed.wanted.min(1.0)
+            rest_to_rest_s(from, to)
         } else {
             return None;
         };
         self.to_next(next, duration_s)
+    }
+
+    /// Whether the machine takes longer through the next knot to a rest at the one after it than
+    /// with a rest at both.
+    fn crawls(
+        &self,
+        [speed, next]: [f64; 2],
+        rest_to_rest_s: impl Fn(&Knot<A>, &Knot<A>) -> f64,
+    ) -> bool {
+        let [_, to, end, ..] = self.knots() else {
+            return false;
+        };
+        if next <= 0.0 || end.ds <= 0.0 || end.speed > 0.0 {
+            return false;
+        }
+        let through_s = time_of(to.ds, [speed, next]) + time_of(end.ds, [next, 0.0]);
+        through_s > time_of(to.ds, [speed, 0.0]) + rest_to_rest_s(to, end)
     }
 
     /// What is made of the knot after the first.

@@ -5,32 +5,20 @@
 //! is slowed, or the speed at the end brought nearer to one that is known to hold.
 
 use super::passes::{Pair as Ends, farthest};
-use super::{Dynamics, TorqueLimits, between, slowed};
+use super::{Dynamics, TorqueLimits, slowed};
 use crate::knot::{SegmentTool, ToolTimes};
+use crate::knots::span;
 use crate::number::larger_or_nan;
 use crate::reciprocals::Reciprocals;
 use crate::segment::GROWTH;
 use crate::stepping::{Pair, Pairs};
-use crate::{Axes, Knot, passes};
+use crate::{Knot, passes};
 
 /// The parts of a speed at the end of a segment that are tried where it is too high for a motor.
 const BRAKING: [f64; 8] = [0.999, 0.99, 0.97, 0.9, 0.75, 0.5, 0.25, 0.0];
 
 /// What motors carry.
 pub(super) struct Laden<'a, D: Dynamics>(pub(super) &'a TorqueLimits<D>);
-
-impl<D: Dynamics> Laden<'_, D> {
-    /// Whether torques between two knots can be bounded.
-    pub(super) fn is_known(
-        &self,
-        limits: &Reciprocals<D::Axes>,
-        knots: [&Knot<D::Axes>; 2],
-    ) -> bool {
-        let slow = passes::rest_to_rest_s(limits, knots, &SegmentTool::NONE);
-        let bend = self.0.dynamics.bend(&between(knots, [0.0; 2], slow));
-        bend.as_slice().iter().all(|bend| bend.is_finite())
-    }
-}
 
 impl<'a, D: Dynamics> Pairs<D::Axes> for Laden<'a, D> {
     type Pair = LadenPair<'a, D>;
@@ -55,10 +43,7 @@ impl<'a, D: Dynamics> Pairs<D::Axes> for Laden<'a, D> {
         tool: &SegmentTool,
     ) -> f64 {
         let own = passes::rest_to_rest_s(limits, knots, tool);
-        let asked = |slowness: f64| {
-            self.0
-                .utilisation(&between(knots, [0.0; 2], own * slowness))
-        };
+        let asked = |slowness: f64| self.0.utilisation(&span(knots, [0.0; 2], own * slowness));
         let speed = slowed(asked(1.0), |speed| asked(1.0 / speed));
         speed.map_or(f64::INFINITY, |speed| own / speed)
     }
@@ -77,7 +62,7 @@ impl<D: Dynamics> LadenPair<'_, D> {
         let [from, to] = &self.knots;
         let duration_s = passes::time_of(to.ds, speeds);
         self.torque
-            .utilisation(&between([from, to], speeds, duration_s))
+            .utilisation(&span([from, to], speeds, duration_s))
     }
 
     /// The pair, or the fastest slower one of the same ratio that is found; at rest where there is

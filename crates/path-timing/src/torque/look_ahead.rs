@@ -149,7 +149,7 @@ where
         let filled = if !self.feeder.is_refused() && self.window.make_room(false) {
             self.feeder
                 .fill(&mut self.window, &self.limits, |from, to| {
-                    pairs.is_known(&self.limits, [from, to])
+                    self.torque.is_known(from, to)
                 })
         } else {
             Ok(())

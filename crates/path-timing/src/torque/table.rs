@@ -2,8 +2,9 @@
 
 use core::cell::Cell;
 
-use super::{Dynamics, Lack, MORE, TorqueLimits, between, passes, slowed};
+use super::{Dynamics, Lack, MORE, TorqueLimits, passes, slowed};
 use crate::departure::{Speeds, Within};
+use crate::knots::span;
 use crate::number::larger_or_nan;
 use crate::passes::segment_s;
 use crate::place::Place;
@@ -47,9 +48,13 @@ impl<D: Dynamics> TorqueLimits<D> {
     /// Where an axis has no limit of its own, give it a speed and an acceleration that it never
     /// reaches; knots are dense where these make the motion slow.
     ///
+    /// A leg with a segment that is too long for its torques to be bounded has twice the segments,
+    /// or four times as many and so on.
+    ///
     /// # Errors
     /// [`PlanError`]; [`PlanError::Overload`] where a motor cannot hold what it carries against
-    /// gravity and friction.
+    /// gravity and friction, [`PlanError::TooCoarse`] where there is no memory for as many segments
+    /// as its torques need.
     pub fn plan<'a, P: Path<Axes = D::Axes>>(
         &self,
         paths: impl IntoIterator<Item = P>,
@@ -60,12 +65,14 @@ impl<D: Dynamics> TorqueLimits<D> {
         let limits = Reciprocals::checked(&limits)?;
         let lay = |place: &Place<'_, P>, free: &mut [Knot<D::Axes>]| {
             place.lay_resolved(segments(place.leg.path()), |segments| {
-                place.lay_plainly(&limits, segments, 0.0, free)
+                let laid = place.lay_plainly(&limits, segments, 0.0, free)?;
+                place.check_known(laid, free, |from, to| self.is_known(from, to))?;
+                Ok(laid)
             })
         };
         let knots = lay_all(paths.into_iter(), &limits, knots, lay)?;
         let Some([stretch, duration_s]) = self.time(&limits, knots)? else {
-            return Err(overload(knots));
+            return Err(self.too_coarse(&Table::new(knots, limits, 0.0)));
         };
         let table = Table::new(knots, limits, duration_s);
         Ok(TorqueTable {
@@ -175,6 +182,20 @@ impl<D: Dynamics> TorqueLimits<D> {
         spans.fold(0.0, larger_or_nan)
     }
 
+    /// The first segment between whose ends nothing is known of the torques.
+    fn too_coarse<E>(&self, table: &Table<'_, D::Axes>) -> PlanError<E> {
+        let unknown = |span: &Span<_>| !self.utilisation(span).is_finite();
+        let (mut leg, mut s) = (0, 0.0);
+        if let Some(Span {
+            s: [from, _],
+            rows: [_, to],
+        }) = table.spans().find(unknown)
+        {
+            (leg, s) = (to.leg, from);
+        }
+        PlanError::TooCoarse { leg, s }
+    }
+
     /// Leaves each segment the share of the torques with which it would have asked for no more than
     /// there is. What was asked at most, as a part of what there is.
     fn lower_shares(&self, knots: &mut [Knot<D::Axes>]) -> f64 {
@@ -186,7 +207,7 @@ impl<D: Dynamics> TorqueLimits<D> {
         for to in rest {
             if to.ds > 0.0 {
                 let speeds = [from.speed, to.speed];
-                let span = between([from, to], speeds, segment_s(from, to));
+                let span = span([from, to], speeds, segment_s(from, to));
                 let asked = self.utilisation(&span);
                 to.set_share(to.share() / (1.0 + (asked - 1.0).max(0.0) * MORE));
                 most = larger_or_nan(most, asked);

@@ -3,10 +3,10 @@
 use core::fmt::Debug;
 
 use path_timing::{
-    Axes, Curve, Dynamics, Knot, Path, PlanError, Row, Span, TorqueCurve, TorqueLimits,
+    Axes, AxisLimits, Curve, Dynamics, Knot, Path, PlanError, Row, Span, TorqueCurve, TorqueLimits,
 };
 use proptest::prelude::*;
-use scara_kin::{ArmDynamics, ArmMasses, ArmPath, Elbow};
+use scara_kin::{ArmDynamics, ArmMasses, ArmPath, Elbow, JointDrive, LinkMass};
 
 use super::{
     FREE, LINES, WITHIN, arm, constant, delta, limits, line, masses, planned, sampled, stepper,
@@ -230,6 +230,90 @@ fn what_cannot_be_held_is_braked() {
     let used = most_in_grease(&paths, 34, friction, &[]);
     assert!(used <= WITHIN, "{used}");
 }
+
+/// At the end of a window the machine was to rest at a knot; after more had come, it passed that
+/// knot at 5e-14 of the speed before, and took 12 trillion seconds to the rest at the next.
+#[test]
+fn a_rest_is_not_crawled_to() {
+    let link = LinkMass {
+        mass_kg: 1.683_411_682_526_423_6,
+        centre_m: 0.14,
+        inertia_kg_m2: 0.03,
+    };
+    let drive = JointDrive {
+        rotor_kg_m2: 0.031_123_223_098_094_326,
+        viscous_nm_s: 0.337_767_476_897_508_6,
+        coulomb_nm: 0.764_592_410_021_209_8,
+    };
+    let masses = ArmMasses {
+        upper: link,
+        fore: link,
+        payload_kg: 2.659_793_170_175_839_3,
+        shoulder: drive,
+        elbow: drive,
+        gravity_m_s2: 9.8,
+    };
+    let motors = [
+        TorqueCurve::holding(185.151_462_094_955_38, 3.995_920_485_501_659_2, 40.0).unwrap(),
+        TorqueCurve::constant(39.754_452_210_015_75, 40.0).unwrap(),
+    ];
+    let dynamics = arm().dynamics(1e-3, masses).unwrap();
+    let torque = TorqueLimits { dynamics, motors };
+    let curve = Curve::bezier([
+        [-13.736_236_387_671, 125.414_910_504_134_06],
+        [179.973_526_586_832_58, 413.228_595_121_814_7],
+        [263.039_758_767_567_04, 146.868_278_787_059_75],
+        [247.090_214_013_062_8, 151.445_308_183_296_22],
+    ]);
+    let path = arm().path(curve.unwrap(), Elbow::Right).unwrap();
+    let joints = [
+        (6.962_512_063_100_581, 162.683_773_500_840_35),
+        (17.724_487_859_063_274, 314.083_073_909_624_9),
+    ];
+    let joints = joints.map(|(speed, acceleration)| AxisLimits {
+        speed,
+        acceleration,
+        jerk: None,
+    });
+    let time_s = |window: usize| {
+        let mut window = vec![Knot::default(); window];
+        let rows = torque.look_ahead([path], joints, |_| Ok(64), &mut window);
+        end_s(&rows.unwrap().map(Result::unwrap).collect::<Vec<_>>())
+    };
+    let whole_s = time_s(128);
+    for window in 15..24 {
+        let ratio = time_s(window) / whole_s;
+        assert!(ratio < 1.1, "{ratio} with a window of {window}");
+    }
+}
+
+/// What is known of a segment from rest to rest was not known at each pair of speeds: tables were
+/// refused, and streams rested at its knots.
+#[test]
+fn coarse_segments_of_a_delta_are_halved() {
+    let (delta, limits) = delta();
+    let curve = Curve::line([-60.0, 20.0, -280.0], [60.0, -10.0, -250.0]).unwrap();
+    let path = delta.path(curve).unwrap();
+    let mut knots = vec![Knot::default(); 401];
+    let mut planned = |segments: u32| {
+        let table = limits.plan([path], [FREE; 3], |_| segments, &mut knots);
+        table.unwrap().duration_s()
+    };
+    let fine_s = planned(400);
+    for segments in 3..24 {
+        let table_s = planned(segments);
+        let stream_s = end_s(&streamed(&limits, &[path], segments, 128, &[]));
+        println!(
+            "{segments}: {:.3} {:.3}",
+            table_s / fine_s,
+            stream_s / fine_s
+        );
+        assert!(table_s < fine_s * COARSER && stream_s < fine_s * COARSER);
+    }
+}
+
+/// What few segments cost at most, as a part of the time.
+const COARSER: f64 = 1.05;
 
 proptest! {
     // Each takes as long as twenty of an arm.
