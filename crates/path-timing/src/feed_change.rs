@@ -44,6 +44,9 @@ const LATER: [usize; 6] = [1, 2, 3, 5, 8, 13];
 /// The speeds that are known for that: those before and after the last segment of the latest.
 const AHEAD: usize = 15;
 
+/// Segments of a stop beyond which another one is looked for.
+const LONG: usize = 2 * AHEAD;
+
 /// Halvings of a feed that nothing moves at.
 const HALVINGS: u32 = 64;
 
@@ -96,9 +99,22 @@ impl SmoothFeed {
         }
         let to = self.change.map_or(self.feed, |change| change.to);
         if (to - wanted).abs() <= 0.0 {
+            self.stop_sooner(course, at);
             return;
         }
         self.change = self.change_for(course, at, wanted).or(self.change);
+    }
+
+    /// A stop over many segments began where the table left little of the limits: one that begins
+    /// here may end sooner.
+    fn stop_sooner<A: Axes>(&mut self, course: &Course<'_, A>, at: At) {
+        let long = |change: &Change| change.to <= 0.0 && change.left > LONG;
+        let Some(long) = self.change.filter(long) else {
+            return;
+        };
+        let found = course.by_phases(at, 0.0, Way::Slower);
+        let sooner = found.filter(|sooner| sooner.left < long.left);
+        self.change = sooner.or(self.change);
     }
 
     /// The change to another feed that begins here. Beside the rows, which most of the time have
@@ -183,9 +199,33 @@ impl<A: Axes> Course<'_, A> {
         going
             .and_then(|going| self.at_limits(at, &[going.begun()], to, Way::Slower))
             .map(Some)
-            .or_else(|| soonest(at, ahead, |at| self.by_phases(at, to, Way::Slower)))
-            .or_else(|| soonest(at, ahead, |at| self.by_shape(at, from, to)))
+            .or_else(|| self.soonest(at, ahead, to, |at| self.by_phases(at, to, Way::Slower)))
+            .or_else(|| self.soonest(at, ahead, to, |at| self.by_shape(at, from, to)))
             .flatten()
+    }
+
+    /// What is found at a knot; `Some(None)` where what is found a few rows later ends sooner: at an
+    /// earlier knot, or in less time at rest, where the machine only gains speed.
+    fn soonest(
+        &self,
+        at: At,
+        ahead: &[f64; AHEAD],
+        to: f64,
+        find: impl Fn(At) -> Option<Change>,
+    ) -> Option<Option<Change>> {
+        let found = find(at);
+        let end = found.map_or(usize::MAX, |found| at.end_of(&found));
+        let time_s =
+            |begun: At, change| self.time_s(at, ahead, (begun, change), begun.end_of(&change));
+        let found_s = found.map_or(f64::INFINITY, |found| time_s(at, found));
+        let waits = later(at, ahead).any(|later| {
+            let is_faster = to <= 0.0 && later.speed > at.speed;
+            (later.index < end || is_faster)
+                && find(later).is_some_and(|found| {
+                    later.end_of(&found) < end || is_faster && time_s(later, found) < found_s
+                })
+        });
+        if waits { Some(None) } else { found.map(Some) }
     }
 
     /// The change to a higher feed that begins here: by phases, or by a shape of the feed if that
@@ -338,18 +378,4 @@ fn later(at: At, ahead: &[f64; AHEAD]) -> impl Iterator<Item = At> {
         })
     });
     later.take_while(|later| later.speed > 0.0)
-}
-
-/// What is found at a knot; `Some(None)` where what is found a few rows later ends sooner.
-fn soonest(
-    at: At,
-    ahead: &[f64; AHEAD],
-    find: impl Fn(At) -> Option<Change>,
-) -> Option<Option<Change>> {
-    let found = find(at);
-    let end = found.map_or(usize::MAX, |found| at.end_of(&found));
-    let waits = { later(at, ahead) }
-        .take_while(|later| later.index < end)
-        .any(|later| find(later).is_some_and(|found| later.end_of(&found) < end));
-    if waits { Some(None) } else { found.map(Some) }
 }

@@ -131,8 +131,8 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
         Ok(())
     }
 
-    /// Holds: comes to rest at a knot as soon as the accelerations allow.
-    /// [`set_feed`](Self::set_feed) goes on.
+    /// Holds: comes to rest at a knot as soon as the limits allow, and may gain speed for that where
+    /// the machine is slow. [`set_feed`](Self::set_feed) goes on.
     pub const fn stop(&mut self) {
         self.wanted = 0.0;
     }

@@ -142,7 +142,8 @@ impl<A: Axes> Playback<'_, A> {
         Ok(())
     }
 
-    /// Stops as soon as the limits allow, on the path. [`set_feed`](Self::set_feed) goes on.
+    /// Stops as soon as the limits allow, at a row: where the machine is slow, it may gain speed for
+    /// a rest that is sooner. [`set_feed`](Self::set_feed) goes on.
     pub const fn stop(&mut self) {
         self.wanted = 0.0;
     }
@@ -252,6 +253,7 @@ impl<A: Axes> Playback<'_, A> {
             later: later.as_ref(),
             ceiling: there.unwrap_or_default().speed,
             ratio: here.unwrap_or_default().ratio,
+            lengths: [to.ds, after.map_or(0.0, |after| after.ds)],
         };
         if self.wanted > 0.0 {
             ahead.toward(at.speed, self.wanted * self.planned(next))

@@ -2,6 +2,7 @@
 //! [`Playback`](crate::Playback) do at each row, whatever limits the speeds at both.
 
 use crate::knot::{SegmentTool, ToolTimes};
+use crate::passes::time_of;
 use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
 use crate::{Axes, Knot, passes};
@@ -110,6 +111,8 @@ pub(crate) struct Ahead<'a, S> {
     pub(crate) ceiling: f64,
     /// A speed at the next knot that holds, as a ratio to the one here.
     pub(crate) ratio: f64,
+    /// Of both segments.
+    pub(crate) lengths: [f64; 2],
 }
 
 impl<S: Pair> Ahead<'_, S> {
@@ -125,20 +128,37 @@ impl<S: Pair> Ahead<'_, S> {
         self.segment.toward(speed, wanted, speed * self.ratio)
     }
 
-    /// The speed at the next knot towards a rest there or at the one after it.
+    /// The speed at the next knot towards a rest there or at the one after it, whichever is sooner.
     pub(crate) fn hold(&self, speed: f64) -> f64 {
-        if speed <= 0.0 || self.ceiling <= 0.0 || self.segment.holds(speed, 0.0) {
+        if speed <= 0.0 || self.ceiling <= 0.0 {
             return 0.0;
         }
         let known = speed * self.ratio;
+        let rest = self.later.map_or(0.0, Pair::speed_to_rest);
+        let highest = rest.min(self.ceiling);
+        if self.segment.holds(speed, 0.0) {
+            // Slow as it is, it would crawl to the knot.
+            let faster = self.segment.end(speed, highest, self.ratio);
+            return if self.rests_sooner(speed, faster) {
+                faster
+            } else {
+                0.0
+            };
+        }
         let nearest = self.segment.slowest(speed, known);
         // Braking as hard as it can before, it would crawl to the knot after it.
-        let rest = self.later.map_or(0.0, Pair::speed_to_rest);
-        let highest = rest.min(speed).min(self.ceiling);
+        let highest = highest.min(speed);
         if highest > nearest && self.segment.holds(speed, highest) {
             highest
         } else {
             nearest
         }
+    }
+
+    /// Whether it is sooner at rest at the knot after the next, with a speed at the next.
+    fn rests_sooner(&self, speed: f64, next: f64) -> bool {
+        let [first, last] = self.lengths;
+        let after_next_s = time_of(first, [speed, next]) + time_of(last, [next, 0.0]);
+        after_next_s < time_of(first, [speed, 0.0])
     }
 }

@@ -238,13 +238,14 @@ impl<'w, A: Axes> Window<'w, A> {
         };
         let next = if to.ds > 0.0 {
             let segment = pairs.of(limits, [from, to], times);
-            let later = later.first().filter(|later| later.ds > 0.0);
-            let later = later.map(|later| pairs.of(limits, [to, later], times));
+            let after = later.first().filter(|after| after.ds > 0.0);
+            let later = after.map(|after| pairs.of(limits, [to, after], times));
             let ahead = Ahead {
                 segment: &segment,
                 later: later.as_ref(),
                 ceiling: to.speed,
                 ratio: from.ratio,
+                lengths: [to.ds, after.map_or(0.0, |after| after.ds)],
             };
             if feed.wanted > 0.0 {
                 let next = ahead.toward(speed, to.wanted);
