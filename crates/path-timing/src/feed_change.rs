@@ -44,6 +44,10 @@ const LATER: [usize; 6] = [1, 2, 3, 5, 8, 13];
 /// The speeds that are known for that: those before and after the last segment of the latest.
 const AHEAD: usize = 15;
 
+/// The part of the time of a stop to rest for which the machine gains speed first: what is found a
+/// few rows later may not be found again at the next one.
+const SOONER: f64 = 0.25;
+
 /// Segments of a stop beyond which another one is looked for.
 const LONG: usize = 2 * AHEAD;
 
@@ -113,7 +117,8 @@ impl SmoothFeed {
             return;
         };
         let found = course.by_phases(at, 0.0, Way::Slower);
-        let sooner = found.filter(|sooner| sooner.left < long.left);
+        let time_s = |change| course.time_s(at, &[0.0; AHEAD], (at, change), at.end_of(&change));
+        let sooner = found.filter(|sooner| time_s(*sooner) < time_s(long));
         self.change = sooner.or(self.change);
     }
 
@@ -205,7 +210,7 @@ impl<A: Axes> Course<'_, A> {
     }
 
     /// What is found at a knot; `Some(None)` where what is found a few rows later ends sooner: at an
-    /// earlier knot, or in less time at rest, where the machine only gains speed.
+    /// earlier knot, or far sooner at rest, where the machine only gains speed.
     fn soonest(
         &self,
         at: At,
@@ -222,7 +227,8 @@ impl<A: Axes> Course<'_, A> {
             let is_faster = to <= 0.0 && later.speed > at.speed;
             (later.index < end || is_faster)
                 && find(later).is_some_and(|found| {
-                    later.end_of(&found) < end || is_faster && time_s(later, found) < found_s
+                    later.end_of(&found) < end
+                        || is_faster && time_s(later, found) < found_s * SOONER
                 })
         });
         if waits { Some(None) } else { found.map(Some) }

@@ -65,8 +65,8 @@ fn blends() {
 }
 
 /// Of the time to brake and to go over some segments from rest to rest. At the rows of 300 polylines
-/// the most was 1.31 (`LINES=300`); where the next knot was crawled to, 349.
-const SOON: f64 = 2.0;
+/// the most was 2.57 (`LINES=300`); where the next knot was crawled to, 349.
+const SOON: f64 = 3.0;
 
 /// Segments within which a stop ends: to a corner and beyond.
 const NEAR: usize = 4;
