@@ -61,6 +61,12 @@ impl SmoothFeed {
         change: None,
     };
 
+    /// At rest.
+    const HELD: Self = Self {
+        feed: 0.0,
+        change: None,
+    };
+
     /// Whether the speeds ahead may be planned anew: no change was tried on them.
     pub(crate) const fn is_constant(&self) -> bool {
         self.change.is_none()
@@ -74,8 +80,12 @@ impl SmoothFeed {
         wanted: f64,
     ) -> Option<f64> {
         self.change = self.change.filter(|change| change.left > 0);
-        self.turn_to(course, at, wanted);
         let next = at.index.saturating_add(1);
+        if at.speed <= 0.0 && wanted > 0.0 && course.leads_to_rest(at) {
+            *self = Self::HELD;
+            return Some(0.0);
+        }
+        self.turn_to(course, at, wanted);
         let planned = course.planned(next);
         let Some(going) = &mut self.change else {
             // At a feed of 0 nothing but the next stop is ahead.

@@ -163,6 +163,9 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
     pub fn next_row(&mut self) -> Result<Option<Row<P::Axes>>, PlanError<P::Error>> {
         let filled = self.fill();
         if self.limits.has_jerk() {
+            if self.wanted > 0.0 && self.is_at_rest() {
+                self.window.rest(&self.limits);
+            }
             self.window.look_through(&self.limits);
         } else {
             self.window.look_back(&OfAxes, &self.limits, self.feed());

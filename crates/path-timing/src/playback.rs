@@ -254,6 +254,7 @@ impl<A: Axes> Playback<'_, A> {
             ceiling: there.unwrap_or_default().speed,
             ratio: here.unwrap_or_default().ratio,
             lengths: [to.ds, after.map_or(0.0, |after| after.ds)],
+            planned: from.speed,
         };
         if self.wanted > 0.0 {
             ahead.toward(at.speed, self.wanted * self.planned(next))

@@ -113,6 +113,28 @@ pub(crate) struct Ahead<'a, S> {
     pub(crate) ratio: f64,
     /// Of both segments.
     pub(crate) lengths: [f64; 2],
+    /// The highest speed here, from which the machine may have been held.
+    pub(crate) planned: f64,
+}
+
+/// How many times as slow as it could be a knot is that a rest at it costs no time.
+const SLOW: f64 = 4.0;
+
+/// Whether a segment from a knot at which the machine was held leads to one so slow that from rest
+/// to rest takes less time: next to a sharp corner.
+pub(crate) fn leads_to_rest(segment: &impl Pair, [planned, next]: [f64; 2]) -> bool {
+    planned > 0.0 && next * SLOW < segment.speed_from_rest()
+}
+
+/// The same of two knots, with the limits of axes and tool alone.
+pub(crate) fn leads_to_rest_from<A: Axes>(
+    limits: &Reciprocals<A>,
+    [from, to]: [&Knot<A>; 2],
+    tool_times: ToolTimes,
+) -> bool {
+    let is_passed = from.speed > 0.0 && to.ds > 0.0;
+    let segment = || Segment::new(limits, from, to, tool_times);
+    is_passed && leads_to_rest(&segment(), [from.speed, to.speed])
 }
 
 impl<S: Pair> Ahead<'_, S> {
@@ -123,7 +145,9 @@ impl<S: Pair> Ahead<'_, S> {
         }
         let wanted = wanted.min(self.ceiling);
         if speed <= 0.0 {
-            return wanted.min(self.segment.speed_from_rest());
+            let is_slow = leads_to_rest(self.segment, [self.planned, self.ceiling]);
+            let highest = self.segment.speed_from_rest();
+            return if is_slow { 0.0 } else { wanted.min(highest) };
         }
         self.segment.toward(speed, wanted, speed * self.ratio)
     }

@@ -5,6 +5,7 @@ use super::phases::State;
 use crate::knot::ToolTimes;
 use crate::passes::segment_s;
 use crate::reciprocals::Reciprocals;
+use crate::stepping::leads_to_rest_from;
 use crate::{Axes, Knot};
 
 /// Knots that are passed at a feed times their speeds.
@@ -58,6 +59,13 @@ impl<A: Axes> Course<'_, A> {
             (Some(from), Some(to)) => segment_s(from, to) * self.stretch,
             _ => 0.0,
         }
+    }
+
+    /// Whether the machine, held at a knot, is to rest at the next one, too.
+    pub(super) fn leads_to_rest(&self, at: At) -> bool {
+        let ahead = self.knots.get(at.index..).unwrap_or_default();
+        let [from, to, ..] = ahead else { return false };
+        leads_to_rest_from(self.limits, [from, to], self.tool_times())
     }
 
     /// Speed and acceleration at a knot at a feed.

@@ -5,7 +5,7 @@ use crate::knot::ToolTimes;
 use crate::number::LARGEST;
 use crate::passes::{rest_to_rest_s, time_of};
 use crate::reciprocals::Reciprocals;
-use crate::stepping::{Ahead, Pair, Pairs};
+use crate::stepping::{Ahead, Pair, Pairs, leads_to_rest_from};
 use crate::{Axes, Knot, PlanError, jerk};
 
 /// Smallest window: a knot between two at rest, and one behind a jump.
@@ -159,6 +159,19 @@ impl<'w, A: Axes> Window<'w, A> {
         (self.new, self.feed) = (0, Some(feed));
     }
 
+    /// With a limit of jerk: where the machine has been held at the first knot, all are to be planned
+    /// anew from a rest there; unless it is to rest at the next one, too.
+    pub(crate) fn rest(&mut self, limits: &Reciprocals<A>) {
+        let knots = self.knots.get_mut(self.first..self.end).unwrap_or_default();
+        if let [first, next, ..] = knots
+            && first.speed > 0.0
+            && !leads_to_rest_from(limits, [first, next], ToolTimes::ONE)
+        {
+            first.speed = 0.0;
+            self.new = knots.len().saturating_sub(1);
+        }
+    }
+
     /// With a limit of jerk: plans the new knots, and those before them that change. Where there is
     /// room nothing follows for now.
     pub(crate) fn look_through(&mut self, limits: &Reciprocals<A>) {
@@ -246,6 +259,7 @@ impl<'w, A: Axes> Window<'w, A> {
                 ceiling: to.speed,
                 ratio: from.ratio,
                 lengths: [to.ds, after.map_or(0.0, |after| after.ds)],
+                planned: from.speed,
             };
             if feed.wanted > 0.0 {
                 let next = ahead.toward(speed, to.wanted);
