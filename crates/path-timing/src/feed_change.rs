@@ -61,12 +61,6 @@ impl SmoothFeed {
         change: None,
     };
 
-    /// At rest.
-    const HELD: Self = Self {
-        feed: 0.0,
-        change: None,
-    };
-
     /// Whether the speeds ahead may be planned anew: no change was tried on them.
     pub(crate) const fn is_constant(&self) -> bool {
         self.change.is_none()
@@ -81,9 +75,15 @@ impl SmoothFeed {
     ) -> Option<f64> {
         self.change = self.change.filter(|change| change.left > 0);
         let next = at.index.saturating_add(1);
-        if at.speed <= 0.0 && wanted > 0.0 && course.leads_to_rest(at) {
-            *self = Self::HELD;
-            return Some(0.0);
+        if at.speed <= 0.0 {
+            self.feed = 0.0;
+            // Where the course rests, too, every feed is as good.
+            if course.planned(at.index) <= 0.0 {
+                (self.feed, self.change) = (wanted, None);
+            } else if wanted > 0.0 && course.leads_to_rest(at) {
+                self.change = None;
+                return Some(0.0);
+            }
         }
         self.turn_to(course, at, wanted);
         let planned = course.planned(next);
@@ -104,32 +104,15 @@ impl SmoothFeed {
 
     /// Begins a change to another feed where there is one.
     fn turn_to<A: Axes>(&mut self, course: &Course<'_, A>, at: At, wanted: f64) {
-        if at.speed <= 0.0 {
-            self.feed = 0.0;
-            // Where the course rests, too, every feed is as good.
-            if course.planned(at.index) <= 0.0 {
-                (self.feed, self.change) = (wanted, None);
-            }
-        }
         let to = self.change.map_or(self.feed, |change| change.to);
         if (to - wanted).abs() <= 0.0 {
-            self.stop_sooner(course, at);
+            let is_long = |change: &Change| change.to <= 0.0 && change.left > LONG;
+            if let Some(long) = self.change.filter(is_long) {
+                self.change = Some(course.sooner(at, long));
+            }
             return;
         }
         self.change = self.change_for(course, at, wanted).or(self.change);
-    }
-
-    /// A stop over many segments began where the table left little of the limits: one that begins
-    /// here may end sooner.
-    fn stop_sooner<A: Axes>(&mut self, course: &Course<'_, A>, at: At) {
-        let long = |change: &Change| change.to <= 0.0 && change.left > LONG;
-        let Some(long) = self.change.filter(long) else {
-            return;
-        };
-        let found = course.by_phases(at, 0.0, Way::Slower);
-        let time_s = |change| course.time_s(at, &[0.0; AHEAD], (at, change), at.end_of(&change));
-        let sooner = found.filter(|sooner| time_s(*sooner) < time_s(long));
-        self.change = sooner.or(self.change);
     }
 
     /// The change to another feed that begins here. Beside the rows, which most of the time have
@@ -217,6 +200,18 @@ impl<A: Axes> Course<'_, A> {
             .or_else(|| self.soonest(at, ahead, to, |at| self.by_phases(at, to, Way::Slower)))
             .or_else(|| self.soonest(at, ahead, to, |at| self.by_shape(at, from, to)))
             .flatten()
+    }
+
+    /// A stop over many segments began where the table left little of the limits: the one that begins
+    /// here if it ends sooner.
+    #[cold]
+    #[inline(never)]
+    fn sooner(&self, at: At, long: Change) -> Change {
+        let time_s = |change| self.time_s(at, &[0.0; AHEAD], (at, change), at.end_of(&change));
+        let found = self.by_phases(at, 0.0, Way::Slower);
+        found
+            .filter(|sooner| time_s(*sooner) < time_s(long))
+            .unwrap_or(long)
     }
 
     /// What is found at a knot; `Some(None)` where what is found a few rows later ends sooner: at an

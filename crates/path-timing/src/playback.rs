@@ -247,10 +247,10 @@ impl<A: Axes> Playback<'_, A> {
         let segment = Segment::new(&self.limits, from, to, times);
         let after = self.knots.get(next.saturating_add(1));
         let after = after.filter(|after| after.ds > 0.0);
-        let later = after.map(|after| Segment::new(&self.limits, to, after, times));
+        let later = || after.map(|after| Segment::new(&self.limits, to, after, times));
         let ahead = Ahead {
             segment: &segment,
-            later: later.as_ref(),
+            later,
             ceiling: there.unwrap_or_default().speed,
             ratio: here.unwrap_or_default().ratio,
             lengths: [to.ds, after.map_or(0.0, |after| after.ds)],

@@ -103,10 +103,10 @@ impl<A: Axes> Pair for Segment<A> {
 }
 
 /// The segment to the next knot and the one after that.
-pub(crate) struct Ahead<'a, S> {
+pub(crate) struct Ahead<'a, S, L> {
     pub(crate) segment: &'a S,
-    /// From the next knot on, unless the machine rests there.
-    pub(crate) later: Option<&'a S>,
+    /// From the next knot on, where there is one: asked for by a hold alone.
+    pub(crate) later: L,
     /// The highest speed at the next knot.
     pub(crate) ceiling: f64,
     /// A speed at the next knot that holds, as a ratio to the one here.
@@ -117,27 +117,22 @@ pub(crate) struct Ahead<'a, S> {
     pub(crate) planned: f64,
 }
 
-/// How many times as slow as it could be a knot is that a rest at it costs no time.
+/// How many times as slow as it may be from rest a knot is at which one rest more costs no time.
 const SLOW: f64 = 4.0;
 
-/// Whether a segment from a knot at which the machine was held leads to one so slow that from rest
+/// Whether a segment leads from a knot at which the machine was held to one so slow that from rest
 /// to rest takes less time: next to a sharp corner.
-pub(crate) fn leads_to_rest(segment: &impl Pair, [planned, next]: [f64; 2]) -> bool {
-    planned > 0.0 && next * SLOW < segment.speed_from_rest()
-}
-
-/// The same of two knots, with the limits of axes and tool alone.
-pub(crate) fn leads_to_rest_from<A: Axes>(
+pub(crate) fn leads_to_rest<A: Axes>(
     limits: &Reciprocals<A>,
     [from, to]: [&Knot<A>; 2],
     tool_times: ToolTimes,
 ) -> bool {
     let is_passed = from.speed > 0.0 && to.ds > 0.0;
-    let segment = || Segment::new(limits, from, to, tool_times);
-    is_passed && leads_to_rest(&segment(), [from.speed, to.speed])
+    let from_rest = || Segment::new(limits, from, to, tool_times).speed_from_rest();
+    is_passed && to.speed * SLOW < from_rest()
 }
 
-impl<S: Pair> Ahead<'_, S> {
+impl<S: Pair, L: Fn() -> Option<S>> Ahead<'_, S, L> {
     /// The speed at the next knot that is nearest to the wanted one.
     pub(crate) fn toward(&self, speed: f64, wanted: f64) -> f64 {
         if self.ceiling <= 0.0 {
@@ -145,8 +140,8 @@ impl<S: Pair> Ahead<'_, S> {
         }
         let wanted = wanted.min(self.ceiling);
         if speed <= 0.0 {
-            let is_slow = leads_to_rest(self.segment, [self.planned, self.ceiling]);
             let highest = self.segment.speed_from_rest();
+            let is_slow = self.planned > 0.0 && self.ceiling * SLOW < highest;
             return if is_slow { 0.0 } else { wanted.min(highest) };
         }
         self.segment.toward(speed, wanted, speed * self.ratio)
@@ -158,7 +153,7 @@ impl<S: Pair> Ahead<'_, S> {
             return 0.0;
         }
         let known = speed * self.ratio;
-        let rest = self.later.map_or(0.0, Pair::speed_to_rest);
+        let rest = (self.later)().map_or(0.0, |later| later.speed_to_rest());
         let highest = rest.min(self.ceiling);
         if self.segment.holds(speed, 0.0) {
             // Slow as it is, it would crawl to the knot.

@@ -5,7 +5,7 @@ use super::phases::State;
 use crate::knot::ToolTimes;
 use crate::passes::segment_s;
 use crate::reciprocals::Reciprocals;
-use crate::stepping::leads_to_rest_from;
+use crate::stepping::leads_to_rest;
 use crate::{Axes, Knot};
 
 /// Knots that are passed at a feed times their speeds.
@@ -62,10 +62,12 @@ impl<A: Axes> Course<'_, A> {
     }
 
     /// Whether the machine, held at a knot, is to rest at the next one, too.
+    #[cold]
+    #[inline(never)]
     pub(super) fn leads_to_rest(&self, at: At) -> bool {
         let ahead = self.knots.get(at.index..).unwrap_or_default();
         let [from, to, ..] = ahead else { return false };
-        leads_to_rest_from(self.limits, [from, to], self.tool_times())
+        leads_to_rest(self.limits, [from, to], self.tool_times())
     }
 
     /// Speed and acceleration at a knot at a feed.

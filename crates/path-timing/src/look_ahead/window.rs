@@ -5,7 +5,7 @@ use crate::knot::ToolTimes;
 use crate::number::LARGEST;
 use crate::passes::{rest_to_rest_s, time_of};
 use crate::reciprocals::Reciprocals;
-use crate::stepping::{Ahead, Pair, Pairs, leads_to_rest_from};
+use crate::stepping::{Ahead, Pair, Pairs, leads_to_rest};
 use crate::{Axes, Knot, PlanError, jerk};
 
 /// Smallest window: a knot between two at rest, and one behind a jump.
@@ -165,7 +165,7 @@ impl<'w, A: Axes> Window<'w, A> {
         let knots = self.knots.get_mut(self.first..self.end).unwrap_or_default();
         if let [first, next, ..] = knots
             && first.speed > 0.0
-            && !leads_to_rest_from(limits, [first, next], ToolTimes::ONE)
+            && !leads_to_rest(limits, [first, next], ToolTimes::ONE)
         {
             first.speed = 0.0;
             self.new = knots.len().saturating_sub(1);
@@ -252,10 +252,10 @@ impl<'w, A: Axes> Window<'w, A> {
         let next = if to.ds > 0.0 {
             let segment = pairs.of(limits, [from, to], times);
             let after = later.first().filter(|after| after.ds > 0.0);
-            let later = after.map(|after| pairs.of(limits, [to, after], times));
+            let later = || after.map(|after| pairs.of(limits, [to, after], times));
             let ahead = Ahead {
                 segment: &segment,
-                later: later.as_ref(),
+                later,
                 ceiling: to.speed,
                 ratio: from.ratio,
                 lengths: [to.ds, after.map_or(0.0, |after| after.ds)],
