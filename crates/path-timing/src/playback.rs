@@ -12,7 +12,7 @@ use crate::number::{LARGEST, SMALLEST, range};
 use crate::passes::{rest_to_rest_s, time_of};
 use crate::reciprocals::Reciprocals;
 use crate::segment::Segment;
-use crate::stepping::Ahead;
+use crate::stepping::{Ahead, may_rest};
 use crate::{Axes, Knot, PlanError, Row, Table};
 pub use ceiling::FeedCeiling;
 
@@ -254,7 +254,7 @@ impl<A: Axes> Playback<'_, A> {
             ceiling: there.unwrap_or_default().speed,
             ratio: here.unwrap_or_default().ratio,
             lengths: [to.ds, after.map_or(0.0, |after| after.ds)],
-            planned: from.speed,
+            may_rest: may_rest([from, to]),
         };
         if self.wanted > 0.0 {
             ahead.toward(at.speed, self.wanted * self.planned(next))

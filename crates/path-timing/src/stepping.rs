@@ -113,23 +113,28 @@ pub(crate) struct Ahead<'a, S, L> {
     pub(crate) ratio: f64,
     /// Of both segments.
     pub(crate) lengths: [f64; 2],
-    /// The highest speed here, from which the machine may have been held.
-    pub(crate) planned: f64,
+    /// Whether the next knot, too, may be gone to from rest.
+    pub(crate) may_rest: bool,
 }
 
 /// How many times as slow as it may be from rest a knot is at which one rest more costs no time.
 const SLOW: f64 = 4.0;
 
-/// Whether a segment leads from a knot at which the machine was held to one so slow that from rest
-/// to rest takes less time: next to a sharp corner.
+/// Whether the machine may go from rest to rest between two knots: where it was held at the last
+/// before the end of a path. Departures are bounded for that, and there the next may be slow.
+pub(crate) const fn may_rest<A: Axes>([from, to]: [&Knot<A>; 2]) -> bool {
+    from.speed > 0.0 && to.ends_leg
+}
+
+/// Whether the machine goes from rest to rest between two knots, since the next is so slow that this
+/// takes less time: a sharp corner.
 pub(crate) fn leads_to_rest<A: Axes>(
     limits: &Reciprocals<A>,
     [from, to]: [&Knot<A>; 2],
     tool_times: ToolTimes,
 ) -> bool {
-    let is_passed = from.speed > 0.0 && to.ds > 0.0;
     let from_rest = || Segment::new(limits, from, to, tool_times).speed_from_rest();
-    is_passed && to.speed * SLOW < from_rest()
+    to.ds > 0.0 && may_rest([from, to]) && to.speed * SLOW < from_rest()
 }
 
 impl<S: Pair, L: Fn() -> Option<S>> Ahead<'_, S, L> {
@@ -141,8 +146,8 @@ impl<S: Pair, L: Fn() -> Option<S>> Ahead<'_, S, L> {
         let wanted = wanted.min(self.ceiling);
         if speed <= 0.0 {
             let highest = self.segment.speed_from_rest();
-            let is_slow = self.planned > 0.0 && self.ceiling * SLOW < highest;
-            return if is_slow { 0.0 } else { wanted.min(highest) };
+            let rests = self.may_rest && self.ceiling * SLOW < highest;
+            return if rests { 0.0 } else { wanted.min(highest) };
         }
         self.segment.toward(speed, wanted, speed * self.ratio)
     }

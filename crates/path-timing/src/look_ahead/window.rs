@@ -5,7 +5,7 @@ use crate::knot::ToolTimes;
 use crate::number::LARGEST;
 use crate::passes::{rest_to_rest_s, time_of};
 use crate::reciprocals::Reciprocals;
-use crate::stepping::{Ahead, Pair, Pairs, leads_to_rest};
+use crate::stepping::{Ahead, Pair, Pairs, leads_to_rest, may_rest};
 use crate::{Axes, Knot, PlanError, jerk};
 
 /// Smallest window: a knot between two at rest, and one behind a jump.
@@ -259,7 +259,7 @@ impl<'w, A: Axes> Window<'w, A> {
                 ceiling: to.speed,
                 ratio: from.ratio,
                 lengths: [to.ds, after.map_or(0.0, |after| after.ds)],
-                planned: from.speed,
+                may_rest: may_rest([from, to]),
             };
             if feed.wanted > 0.0 {
                 let next = ahead.toward(speed, to.wanted);
@@ -295,7 +295,8 @@ impl<'w, A: Axes> Window<'w, A> {
         let [_, to, end, ..] = self.knots() else {
             return false;
         };
-        if next <= 0.0 || end.ds <= 0.0 || end.speed > 0.0 {
+        // From rest to rest departures are bounded at the end of a path alone.
+        if next <= 0.0 || end.ds <= 0.0 || end.speed > 0.0 || !end.ends_leg {
             return false;
         }
         let through_s = time_of(to.ds, [speed, next]) + time_of(end.ds, [next, 0.0]);
