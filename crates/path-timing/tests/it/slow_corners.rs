@@ -68,7 +68,7 @@ fn blends() {
 /// and by how much later the machine is at the end when it goes on from there at once. At the rows
 /// of 300 polylines the most was 2.57, and 0.32 behind the rest (`LINES=300`); where it crawled to
 /// the next knot, 349 and 468.
-const SOON: f64 = 3.0;
+const SOON: [f64; 2] = [3.0, 0.5];
 
 /// Segments within which a stop ends: to a corner and beyond.
 const NEAR: usize = 4;
@@ -171,8 +171,7 @@ fn holds_cost_little() {
         }
     }
     println!("table and stream: {slowest:.2?}");
-    assert!(
-        slowest.as_flattened().iter().all(|share| *share < SOON),
-        "{slowest:?}"
-    );
+    for [stop, late] in slowest {
+        assert!(stop < SOON[0] && late < SOON[1], "{slowest:?}");
+    }
 }

@@ -1,5 +1,6 @@
 //! Limits of torque: curves of motors, the tables of an arm against other derivations.
 
+mod coarse;
 mod monotonic;
 mod streams;
 
@@ -10,8 +11,8 @@ use std::process::{Command, Stdio};
 
 use delta_kin::{Delta, DeltaDynamics, DeltaMasses, Dimensions};
 use path_timing::{
-    Accuracy, AxisLimits, Cubic, Curve, Dynamics, Friction, Knot, PlanError, Row, Span, Table,
-    TorqueCurve, TorqueCurveError, TorqueLimits,
+    Accuracy, AxisLimits, Cubic, Curve, Knot, PlanError, Row, Span, Table, TorqueCurve,
+    TorqueCurveError, TorqueLimits,
 };
 use proptest::prelude::*;
 use scara_kin::{Arm, ArmDynamics, ArmMasses, ArmPath, Elbow, JointDrive, Joints, LinkMass};
@@ -55,6 +56,23 @@ fn masses(payload_kg: f64) -> ArmMasses {
             coulomb_nm: 0.4,
         },
         gravity_m_s2: 0.0,
+    }
+}
+
+/// Upright, with links of one mass and joints with one drive.
+fn alike(link_mass_kg: f64, drive: JointDrive, payload_kg: f64) -> ArmMasses {
+    let link = LinkMass {
+        mass_kg: link_mass_kg,
+        centre_m: 0.14,
+        inertia_kg_m2: 0.03,
+    };
+    ArmMasses {
+        upper: link,
+        fore: link,
+        payload_kg,
+        shoulder: drive,
+        elbow: drive,
+        gravity_m_s2: 9.8,
     }
 }
 
@@ -571,41 +589,4 @@ fn time_above_that_of_toppra() {
             assert!((0.999..1.005).contains(&(time_s / shortest_s)));
         }
     }
-}
-
-/// Masses of 1 whose torques are known on segments with a rest alone.
-struct Unforeseen;
-
-impl Dynamics for Unforeseen {
-    type Axes = [f64; 2];
-
-    fn torques(&self, _: &[f64; 2], _: &[f64; 2], acceleration: &[f64; 2]) -> [f64; 2] {
-        *acceleration
-    }
-
-    fn friction(&self) -> [Friction; 2] {
-        [Friction::default(); 2]
-    }
-
-    fn bend(&self, span: &Span<[f64; 2]>) -> [f64; 2] {
-        let rests = span.rows.iter().any(Row::is_at_rest);
-        [if rests { 0.0 } else { f64::INFINITY }; 2]
-    }
-}
-
-#[test]
-fn torques_that_stay_unknown_are_refused_with_their_place() {
-    let motors = [TorqueCurve::constant(10.0, 30.0).unwrap(); 2];
-    let limits = TorqueLimits {
-        dynamics: Unforeseen,
-        motors,
-    };
-    let line = Curve::line([0.0, 0.0], [3.0, 4.0]).unwrap();
-    let mut knots = [Knot::default(); 20];
-    let refused = limits.plan([line], [FREE; 2], |_| 10, &mut knots);
-    // The first segment begins at rest.
-    let Some(PlanError::TooCoarse { leg: 0, s }) = refused.as_ref().err() else {
-        panic!("{refused:?}");
-    };
-    assert!(*s > 0.0 && *s < 1.0, "{s}");
 }

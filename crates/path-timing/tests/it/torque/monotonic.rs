@@ -2,9 +2,9 @@
 
 use path_timing::{AxisLimits, Curve, Knot, PlanError, TorqueCurve, TorqueLimits};
 use proptest::prelude::*;
-use scara_kin::{ArmDynamics, ArmMasses, ArmPath, Elbow, JointDrive, LinkMass};
+use scara_kin::{ArmDynamics, ArmMasses, ArmPath, Elbow, JointDrive};
 
-use super::{arm, masses};
+use super::{alike, arm, masses};
 
 /// By what a motion may be slower, as a part of its time.
 const SLOWER: f64 = 1.01;
@@ -94,24 +94,12 @@ proptest! {
 /// that asked for 0.7 % too much.
 #[test]
 fn a_segment_does_not_slow_the_whole() {
-    let link = LinkMass {
-        mass_kg: 0.922_180_185_672_872_7,
-        centre_m: 0.14,
-        inertia_kg_m2: 0.03,
-    };
     let drive = JointDrive {
         rotor_kg_m2: 0.006_573_157_772_121_375,
         viscous_nm_s: 0.284_775_402_003_177_64,
         coulomb_nm: 0.046_331_853_069_414_675,
     };
-    let masses = ArmMasses {
-        upper: link,
-        fore: link,
-        payload_kg: 1.745_027_415_697_867_6,
-        shoulder: drive,
-        elbow: drive,
-        gravity_m_s2: 9.8,
-    };
+    let masses = alike(0.922_180_185_672_872_7, drive, 1.745_027_415_697_867_6);
     let motors = [(165.561, 4.820_634_297), (32.9464, 1.198_447_894)]
         .map(|(torque, corner)| TorqueCurve::holding(torque, corner, 40.0).unwrap());
     let dynamics = arm().dynamics(1e-3, masses).unwrap();

@@ -6,14 +6,15 @@ use path_timing::{
     Axes, AxisLimits, Curve, Dynamics, Knot, Path, PlanError, Row, Span, TorqueCurve, TorqueLimits,
 };
 use proptest::prelude::*;
-use scara_kin::{ArmDynamics, ArmMasses, ArmPath, Elbow, JointDrive, LinkMass};
+use scara_kin::{ArmDynamics, ArmMasses, ArmPath, Elbow, JointDrive};
 
 use super::{
-    FREE, LINES, WITHIN, arm, constant, delta, limits, line, masses, planned, sampled, stepper,
+    FREE, LINES, WITHIN, alike, arm, constant, delta, limits, line, masses, planned, sampled,
+    stepper,
 };
 
 /// All rows, with feeds that are wanted after some of them; at the end the whole feed.
-fn streamed<D, P>(
+pub(super) fn streamed<D, P>(
     limits: &TorqueLimits<D>,
     paths: &[P],
     segments: u32,
@@ -49,7 +50,7 @@ fn most<D: Dynamics>(limits: &TorqueLimits<D>, rows: &[Row<D::Axes>]) -> f64 {
     used.fold(0.0, |most, used| if used <= most { most } else { used })
 }
 
-fn end_s<A: Axes>(rows: &[Row<A>]) -> f64 {
+pub(super) fn end_s<A: Axes>(rows: &[Row<A>]) -> f64 {
     rows.last().unwrap().time_s
 }
 
@@ -235,24 +236,12 @@ fn what_cannot_be_held_is_braked() {
 /// knot at 5e-14 of the speed before, and took 12 trillion seconds to the rest at the next.
 #[test]
 fn a_rest_is_not_crawled_to() {
-    let link = LinkMass {
-        mass_kg: 1.683_411_682_526_423_6,
-        centre_m: 0.14,
-        inertia_kg_m2: 0.03,
-    };
     let drive = JointDrive {
         rotor_kg_m2: 0.031_123_223_098_094_326,
         viscous_nm_s: 0.337_767_476_897_508_6,
         coulomb_nm: 0.764_592_410_021_209_8,
     };
-    let masses = ArmMasses {
-        upper: link,
-        fore: link,
-        payload_kg: 2.659_793_170_175_839_3,
-        shoulder: drive,
-        elbow: drive,
-        gravity_m_s2: 9.8,
-    };
+    let masses = alike(1.683_411_682_526_423_6, drive, 2.659_793_170_175_839_3);
     let motors = [
         TorqueCurve::holding(185.151_462_094_955_38, 3.995_920_485_501_659_2, 40.0).unwrap(),
         TorqueCurve::constant(39.754_452_210_015_75, 40.0).unwrap(),
@@ -286,34 +275,6 @@ fn a_rest_is_not_crawled_to() {
         assert!(ratio < 1.1, "{ratio} with a window of {window}");
     }
 }
-
-/// What is known of a segment from rest to rest was not known at each pair of speeds: tables were
-/// refused, and streams rested at its knots.
-#[test]
-fn coarse_segments_of_a_delta_are_halved() {
-    let (delta, limits) = delta();
-    let curve = Curve::line([-60.0, 20.0, -280.0], [60.0, -10.0, -250.0]).unwrap();
-    let path = delta.path(curve).unwrap();
-    let mut knots = vec![Knot::default(); 401];
-    let mut planned = |segments: u32| {
-        let table = limits.plan([path], [FREE; 3], |_| segments, &mut knots);
-        table.unwrap().duration_s()
-    };
-    let fine_s = planned(400);
-    for segments in 3..24 {
-        let table_s = planned(segments);
-        let stream_s = end_s(&streamed(&limits, &[path], segments, 128, &[]));
-        println!(
-            "{segments}: {:.3} {:.3}",
-            table_s / fine_s,
-            stream_s / fine_s
-        );
-        assert!(table_s < fine_s * COARSER && stream_s < fine_s * COARSER);
-    }
-}
-
-/// What few segments cost at most, as a part of the time.
-const COARSER: f64 = 1.05;
 
 proptest! {
     // Each takes as long as twenty of an arm.
