@@ -175,3 +175,49 @@ fn holds_cost_little() {
         assert!(stop < SOON[0] && late < SOON[1], "{slowest:?}");
     }
 }
+
+/// From where a bend leaves little of the limits, the first stop that was found lasted 2.6 s.
+#[test]
+fn a_long_stop_is_shortened() {
+    let curves = [
+        [
+            [80.244, 9.717],
+            [1.466, 6.624],
+            [66.518, 29.266],
+            [12.177, 47.179],
+        ],
+        [
+            [12.177, 47.179],
+            [53.956, 80.153],
+            [76.732, 71.944],
+            [76.347, 27.748],
+        ],
+        [
+            [76.347, 27.748],
+            [50.941, 44.85],
+            [70.58, 16.633],
+            [57.917, 48.697],
+        ],
+        [
+            [57.917, 48.697],
+            [50.976, 71.05],
+            [56.992, 82.736],
+            [5.204, 8.314],
+        ],
+    ];
+    let curves = curves.map(|points| {
+        let curve = Curve::bezier(points).unwrap();
+        curve.with_corner(Corner::Jump([0.13; 2]))
+    });
+    let axis = limits(79.732_153_87, 1_930.042_326_6, Some(47_832.033_22));
+    let mut knots = vec![Knot::default(); 400];
+    let table = Table::plan(curves, [axis; 2], |_| 11, &mut knots).unwrap();
+    let mut ceilings = [FeedCeiling::default(); 400];
+    for row in 106..116 {
+        let mut motion = table.playback(1.0, &mut ceilings).unwrap();
+        motion.nth(row);
+        motion.stop();
+        let rest_s = motion.map(|row| row.duration_s).sum::<f64>();
+        assert!(rest_s < 1.0, "{rest_s} s from row {row}");
+    }
+}
