@@ -77,12 +77,13 @@ impl SmoothFeed {
         let next = at.index.saturating_add(1);
         if at.speed <= 0.0 {
             self.feed = 0.0;
+            if course.leads_to_rest(at) && wanted > 0.0 {
+                self.change = None;
+                return Some(0.0);
+            }
             // Where the course rests, too, every feed is as good.
             if course.planned(at.index) <= 0.0 {
                 (self.feed, self.change) = (wanted, None);
-            } else if wanted > 0.0 && course.leads_to_rest(at) {
-                self.change = None;
-                return Some(0.0);
             }
         }
         self.turn_to(course, at, wanted);
@@ -100,6 +101,12 @@ impl SmoothFeed {
             self.feed = speed / planned;
         }
         Some(speed)
+    }
+
+    /// Whether the machine may rest at the next knot, with no change of the feed going on.
+    pub(crate) fn may_rest<A: Axes>(&self, course: &Course<'_, A>, at: At) -> bool {
+        let trial = || course.trial(at, [self.feed, 0.0], 1);
+        self.is_constant() && matches!(trial(), Trial::Holds(_))
     }
 
     /// Begins a change to another feed where there is one.
@@ -194,12 +201,40 @@ impl<A: Axes> Course<'_, A> {
     ) -> Option<Change> {
         // What brakes already goes on as it began. One found by its length takes long to find, and
         // longer to run.
-        going
+        let found = going
             .and_then(|going| self.at_limits(at, &[going.begun()], to, Way::Slower))
             .map(Some)
             .or_else(|| self.soonest(at, ahead, to, |at| self.by_phases(at, to, Way::Slower)))
             .or_else(|| self.soonest(at, ahead, to, |at| self.by_shape(at, from, to)))
-            .flatten()
+            .flatten()?;
+        let crawls = to <= 0.0 && found.left == 1 && self.crawls_to(at.end_of(&found), at.speed);
+        Some(if crawls {
+            self.sooner_with_its_rest(at, from, found)
+        } else {
+            found
+        })
+    }
+
+    /// A stop to the next knot that crawls, or the one that ends where the course rests itself if that
+    /// is far sooner.
+    #[cold]
+    #[inline(never)]
+    fn sooner_with_its_rest(&self, at: At, from: f64, found: Change) -> Change {
+        let time_s = |change| self.time_s(at, &[0.0; AHEAD], (at, change), at.end_of(&change));
+        self.with_its_rest(at, [from, 0.0])
+            .filter(|later| time_s(*later) < time_s(found) * SOONER)
+            .unwrap_or(found)
+    }
+
+    /// The change that ends where the course rests itself.
+    fn with_its_rest(&self, at: At, [from, to]: [f64; 2]) -> Option<Change> {
+        let Trial::TooLong(available) = self.trial(at, [from, to], usize::MAX) else {
+            return None;
+        };
+        match self.trial(at, [from, to], available) {
+            Trial::Holds(change) => Some(change),
+            _ => None,
+        }
     }
 
     /// A stop over many segments began where the table left little of the limits: the one that begins
@@ -290,9 +325,7 @@ impl<A: Axes> Course<'_, A> {
             if let Some(change) = self.speed_up(at, &[0.0; AHEAD], [0.0, feed]) {
                 return Some(change);
             }
-            if let Trial::TooLong(available) = self.trial(at, [0.0, feed], usize::MAX)
-                && let Trial::Holds(change) = self.trial(at, [0.0, feed], available)
-            {
+            if let Some(change) = self.with_its_rest(at, [0.0, feed]) {
                 return Some(change);
             }
             feed *= 0.5;
@@ -354,6 +387,7 @@ impl<A: Axes> Course<'_, A> {
             let Some(next) = walk.next_knot(self.knots) else {
                 return true;
             };
+            let index = next.saturating_sub(1);
             let planned = self.planned(next);
             let ds = self.knots.get(next).map_or(0.0, |knot| knot.ds);
             let speed = if is_after {
@@ -367,7 +401,8 @@ impl<A: Axes> Course<'_, A> {
             segment.visit(&mut most);
             // Written so that NaN does not hold.
             let holds = most.stretch <= 1.0;
-            if !holds {
+            let crawls = || self.crawls_to(next, self.planned(index));
+            if !holds || at.speed > 0.0 && speed <= 0.0 && change.to > 0.0 && crawls() {
                 return false;
             }
             if is_after || speed <= 0.0 {

@@ -121,9 +121,10 @@ pub(crate) struct Ahead<'a, S, L> {
 const SLOW: f64 = 4.0;
 
 /// Whether the machine may go from rest to rest between two knots: where it was held at the last
-/// before the end of a path. Departures are bounded for that, and there the next may be slow.
+/// before the end of a path, or a window ended there. Departures are bounded for that, and there the
+/// next may be slow.
 pub(crate) const fn may_rest<A: Axes>([from, to]: [&Knot<A>; 2]) -> bool {
-    from.speed > 0.0 && to.ends_leg
+    to.ends_leg && from.cap > 0.0
 }
 
 /// Whether the machine goes from rest to rest between two knots, since the next is so slow that this
@@ -131,10 +132,10 @@ pub(crate) const fn may_rest<A: Axes>([from, to]: [&Knot<A>; 2]) -> bool {
 pub(crate) fn leads_to_rest<A: Axes>(
     limits: &Reciprocals<A>,
     [from, to]: [&Knot<A>; 2],
-    tool_times: ToolTimes,
+    tool_times: impl FnOnce() -> ToolTimes,
 ) -> bool {
-    let from_rest = || Segment::new(limits, from, to, tool_times).speed_from_rest();
-    to.ds > 0.0 && may_rest([from, to]) && to.speed * SLOW < from_rest()
+    let from_rest = || Segment::new(limits, from, to, tool_times()).speed_from_rest();
+    may_rest([from, to]) && to.ds > 0.0 && to.speed * SLOW < from_rest()
 }
 
 impl<S: Pair, L: Fn() -> Option<S>> Ahead<'_, S, L> {

@@ -3,7 +3,7 @@
 use super::change::Change;
 use super::phases::State;
 use crate::knot::ToolTimes;
-use crate::passes::segment_s;
+use crate::passes::{rest_to_rest_s, segment_s, time_of};
 use crate::reciprocals::Reciprocals;
 use crate::stepping::leads_to_rest;
 use crate::{Axes, Knot};
@@ -28,6 +28,9 @@ pub(crate) struct At {
     /// At the knot before.
     pub(crate) before: f64,
 }
+
+/// How many times the time from rest a segment to a rest may take.
+const SLOW: f64 = 4.0;
 
 impl At {
     /// The knot where a change ends that begins here.
@@ -67,7 +70,21 @@ impl<A: Axes> Course<'_, A> {
     pub(super) fn leads_to_rest(&self, at: At) -> bool {
         let ahead = self.knots.get(at.index..).unwrap_or_default();
         let [from, to, ..] = ahead else { return false };
-        leads_to_rest(self.limits, [from, to], self.tool_times())
+        leads_to_rest(self.limits, [from, to], || self.tool_times())
+    }
+
+    /// Whether a rest at this knot is far sooner from a rest at the knot before than from a speed
+    /// there: a window ended at that one when its speed was planned.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn crawls_to(&self, index: usize, speed: f64) -> bool {
+        let before = index.checked_sub(1);
+        let before = before.and_then(|before| self.knots.get(before));
+        let (Some(from), Some(to)) = (before, self.knots.get(index)) else {
+            return false;
+        };
+        let from_rest_s = rest_to_rest_s(self.limits, [from, to], &to.tool) * self.stretch;
+        time_of(to.ds, [speed, 0.0]) > from_rest_s * SLOW
     }
 
     /// Speed and acceleration at a knot at a feed.

@@ -159,7 +159,7 @@ const FASTER: f64 = 1.001;
 /// so their step is within what it makes in both halves.
 ///
 /// The squares of the speeds go as far as the limits allow towards a smooth step between the
-/// fastest places on both sides.
+/// fastest places on both sides; between rests, towards the mean speed from one to the next.
 fn raise<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], fixed: usize, old: usize) {
     // The knot of a jump rests with the one before it.
     let jump = old.saturating_add(1);
@@ -177,7 +177,11 @@ fn raise<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], fixed: usize, 
         let speed = run.get(index).map_or(0.0, |knot| knot.speed);
         speed * speed
     };
-    let (low, high) = (square(left), square(right));
+    let (mut low, mut high) = (square(left), square(right));
+    if low.max(high) <= 0.0 {
+        let mean = slowest_mean(limits, run.get(left..=right).unwrap_or_default());
+        (low, high) = (mean * mean, mean * mean);
+    }
     let inside = left.saturating_add(1)..right;
     let length_of = |knots: &[Knot<A>]| knots.iter().map(|knot| knot.ds).sum::<f64>();
     let whole = run
@@ -193,7 +197,7 @@ fn raise<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], fixed: usize, 
             knot.equation.right = wanted - knot.speed * knot.speed;
         }
     }
-    let mut part = if low.max(high) > 0.0 { 1.0 } else { 0.0 };
+    let mut part = 1.0;
     for _ in 0..HALVINGS {
         let mut most = Most::default();
         visit_all(limits, run, newton::speed_after(part), |segment| {
@@ -206,6 +210,16 @@ fn raise<A: Axes>(limits: &Reciprocals<A>, knots: &mut [Knot<A>], fixed: usize, 
         }
         part *= 0.5;
     }
+}
+
+/// The lowest mean speed of the segments between rests.
+fn slowest_mean<A: Axes>(limits: &Reciprocals<A>, rests: &[Knot<A>]) -> f64 {
+    let pairs = rests.iter().zip(rests.iter().skip(1));
+    let means = pairs.filter(|(_, to)| to.ds > 0.0).map(|(from, to)| {
+        let time_s = passes::rest_to_rest_s(limits, [from, to], &to.tool);
+        to.ds / time_s
+    });
+    means.fold(f64::INFINITY, f64::min)
 }
 
 /// The number of the fastest knot.

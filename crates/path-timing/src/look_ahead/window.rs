@@ -165,7 +165,7 @@ impl<'w, A: Axes> Window<'w, A> {
         let knots = self.knots.get_mut(self.first..self.end).unwrap_or_default();
         if let [first, next, ..] = knots
             && first.speed > 0.0
-            && !leads_to_rest(limits, [first, next], ToolTimes::ONE)
+            && !leads_to_rest(limits, [first, next], || ToolTimes::ONE)
         {
             first.speed = 0.0;
             self.new = knots.len().saturating_sub(1);
@@ -219,15 +219,23 @@ impl<'w, A: Axes> Window<'w, A> {
             speed,
             before,
         };
+        let from_rest_s =
+            |from: &Knot<A>, to: &Knot<A>| rest_to_rest_s(limits, [from, to], &to.tool) / wanted;
         let next = if to.ds > 0.0 {
-            feed.next_speed(&course, at, wanted)?
+            let next = feed.next_speed(&course, at, wanted)?;
+            let crawls = wanted > 0.0 && self.crawls([speed, next], from_rest_s);
+            if crawls && feed.may_rest(&course, at) {
+                0.0
+            } else {
+                next
+            }
         } else {
             speed
         };
         let duration_s = if to.ds <= 0.0 || speed + next > 0.0 {
             time_of(to.ds, [speed, next])
         } else {
-            rest_to_rest_s(limits, [from, to], &to.tool) / wanted
+            from_rest_s(from, to)
         };
         self.to_next(next, duration_s)
     }
