@@ -58,6 +58,9 @@ pub(crate) struct Back {
     pub(crate) last: Direction,
     /// Ticks of the row until a step back may come.
     pub(crate) wait_ticks: u64,
+    /// Ticks from a step back that has waited to the time at which the axis may be at the next place
+    /// or turn round.
+    pub(crate) apart_ticks: u64,
 }
 
 /// An axis within a row. Positions are measured in the direction of the present piece, so
@@ -217,10 +220,10 @@ impl Run {
     }
 
     /// The first steps of the row: a step back waits until the driver can take it, if the axis is
-    /// then past its place by no more than the touch.
+    /// then past its place by no more than the touch, or the next step has its time.
     ///
     /// # Errors
-    /// The tick of the row at which the axis is further, or has turned round once more.
+    /// The tick of the row at which it waits no longer.
     pub(crate) fn first(&mut self, back: Option<Back>) -> Result<Option<Batch>, u32> {
         if self.find_piece().is_none() {
             return Ok(None);
@@ -240,11 +243,22 @@ impl Run {
         if fraction <= self.low || past < 0 {
             return Ok(self.next());
         }
-        if past > self.touch {
+        let next = back.wait_ticks.saturating_add(back.apart_ticks);
+        if past > self.touch && !self.is_before_the_next_place(next) {
             return Err(wait);
         }
         self.due = false;
         Ok(Some(self.made(1, Times::single(u64::from(wait) << 32))))
+    }
+
+    /// Whether the axis is still in this piece after so many ticks of the row, and not at the place
+    /// after the next step's.
+    fn is_before_the_next_place(&self, ticks: u64) -> bool {
+        let [end, ..] = self.ends;
+        self.fraction_of(ticks).is_some_and(|fraction| {
+            let past = self.cubic.at(fraction).position - self.place;
+            fraction <= end && past < self.cubic.step()
+        })
     }
 
     /// Ticks as a fraction of the row; `None` after its end.

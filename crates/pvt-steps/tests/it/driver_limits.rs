@@ -11,7 +11,8 @@ fn a_step_back_waits_for_the_driver() {
     let top = knot(STEP / 2 + STEP / 400, v);
     let back = knot(top.position, -v);
     let rows = [(50, top), (0, back), (50, knot(STEP / 400, -v))];
-    // 30 ticks later the axis would be 0.3 steps past its place.
+    // 30 ticks later the axis would be 0.3 steps past its place, and the row ends before the driver
+    // has had its time again.
     let mut axis = AxisSegments::new(knot(0, v), LEAST);
     axis.push(50, top).unwrap();
     assert_eq!(axis.by_ref().count(), 1);
@@ -29,7 +30,25 @@ fn a_step_back_waits_for_the_driver() {
         error.to_string(),
         "row 2, axis 0, tick 80: steps back in fewer than 30 ticks"
     );
+    // A row that goes on: the step waits, those after it come in their time.
+    let on = knot(STEP / 2 - 5 * STEP, -v);
+    let made = steps(knot(0, v), &[(50, top), (0, back), (500, on)]);
+    assert_eq!(made[..2], [(50, 1), (80, -1)]);
+    assert!(made[2].0 == 150 && made.iter().all(|step| step.0 == 50 || step.1 == -1));
+    // At a step in 40 ticks the next one would come 8 ticks after it.
+    let v = STEP_A_TICK / 40;
+    let [top, back, on] = [(1, v), (1, -v), (-9, -v)].map(|(halves, v)| knot(halves * STEP / 2, v));
+    let mut axis = AxisSegments::new(knot(STEP / 4, v), LEAST);
+    axis.push(10, knot(top.position + 1, v)).unwrap();
+    axis.by_ref().for_each(drop);
+    axis.push(0, knot(top.position + 1, back.velocity)).unwrap();
+    let refused = axis.push(200, on);
+    assert!(
+        matches!(refused, Err(RowError::ReversalTooQuick { ticks: 40, .. })),
+        "{refused:?}"
+    );
     // A hundredth as fast it is past by 0.003 steps: the step waits.
+    let v = STEP_A_TICK / 100;
     let v = v / 100;
     let made = steps(
         knot(0, v),

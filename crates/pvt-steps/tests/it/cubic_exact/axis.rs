@@ -21,8 +21,8 @@ struct Wanted {
     ticks: u64,
     /// After the step before.
     wait: u64,
-    /// How far its place may be passed, in 2^-56 steps.
-    touch: i128,
+    /// How far its place may be passed, times T³.
+    late: I256,
 }
 
 impl Wanted {
@@ -53,8 +53,7 @@ impl Wanted {
             // What is made late: a place that was passed already, or a step that waits for the
             // driver, which counts from the one before; where that has no place in time, neither
             // has this one.
-            let late = I256::from(self.touch) * self.exact.cube() + self.exact.standstill();
-            let as_due = distance <= late + I256::from(2) * self.exact.speed_near(n)
+            let as_due = distance <= self.late + I256::from(2) * self.exact.speed_near(n)
                 && (ticks.abs_diff(self.ticks) <= 1 || wait.abs_diff(self.wait) <= 2);
             assert!(
                 (by_place && !moves) || as_due,
@@ -80,6 +79,9 @@ pub(crate) struct Axis {
     row_start: u64,
     steps: i64,
     last: Option<(u64, Direction)>,
+    /// The tick of the row at which a step back has waited for the driver, and how far its place was
+    /// passed, times T³.
+    waited: Option<(i128, I256)>,
     least: MinIntervals,
 }
 
@@ -103,6 +105,7 @@ impl Axis {
             knot,
             row_start: 0,
             last: None,
+            waited: None,
             least,
         }
     }
@@ -122,7 +125,10 @@ impl Axis {
                     self.check_too_fast(ticks, to);
                     seen.too_fast += 1;
                 }
-                RowError::ReversalTooQuick { .. } => seen.too_quick += 1,
+                RowError::ReversalTooQuick { .. } => {
+                    self.check_too_quick(ticks, to);
+                    seen.too_quick += 1;
+                }
                 RowError::NoTime { .. } => assert!(ticks == 0 && to.position != self.knot.position),
                 other => panic!("{other}"),
             }
@@ -138,6 +144,7 @@ impl Axis {
         let mut made: Vec<(i128, i64)> = vec![(-1, self.steps)];
         let mut last_ticks = self.last.map_or(0, |(ticks, _)| ticks);
         let mut first = true;
+        self.waited = None;
         while let Some(segment) = self.emitter.next() {
             seen.segments += 1;
             let mut player = SegmentPlayer::new();
@@ -191,6 +198,20 @@ impl Axis {
         };
         let place = i128::from(2 * self.steps + sign) * STEP / 2;
         self.steps += sign;
+        let n = i128::from(ticks - self.row_start);
+        assert!(n <= exact.ticks, "step at {n} of {}", exact.ticks);
+        let waits = first && ticks == self.earliest(direction) && self.turned_at_last(direction);
+        let touch = I256::from(self.touch()) * exact.cube() + exact.standstill();
+        let late = if waits {
+            let distance = I256::from(sign) * exact.past_place(n, place);
+            self.waited = Some((n, distance));
+            // Before the next place, which has its time: the step after this is no sooner than it
+            // may.
+            assert!(distance < I256::from(STEP) * exact.cube(), "{distance}");
+            touch.max(distance)
+        } else {
+            touch
+        };
         self.wanted.push_back(Wanted {
             exact: Rc::clone(exact),
             row_start: self.row_start,
@@ -198,16 +219,9 @@ impl Axis {
             direction,
             ticks,
             wait: ticks - self.last.map_or(0, |(last, _)| last),
-            touch: self.touch(),
+            late,
         });
-        let n = i128::from(ticks - self.row_start);
-        assert!(n <= exact.ticks, "step at {n} of {}", exact.ticks);
-        let least = match self.last {
-            Some((_, last)) if last == direction => self.least.step_ticks,
-            Some(_) => self.least.reversal_ticks,
-            None => 0,
-        };
-        let earliest = self.last.map_or(0, |(last, _)| last + least);
+        let earliest = self.earliest(direction);
         assert!(
             ticks >= earliest,
             "step at {ticks}, before {earliest}: {:?} then {direction:?}",
@@ -230,11 +244,11 @@ impl Axis {
                 (turn - n).abs() <= 1 || since.abs() <= exact.standstill()
             })
         };
-        let late = !in_time && first && (n == 0 || ticks == earliest);
+        let is_late = !in_time && first && (n == 0 || ticks == earliest);
         let due = distance > 0 && !(in_time && by_place) && turned();
-        if late || due {
-            let late = distance <= I256::from(self.touch()) * exact.cube() + exact.standstill();
-            assert!(late, "late by {distance} of {} at {n}", exact.cube());
+        if is_late || due {
+            let is_within = distance <= late;
+            assert!(is_within, "late by {distance} of {} at {n}", exact.cube());
             seen.due_or_late += 1;
             return;
         }
@@ -265,6 +279,46 @@ impl Axis {
             let rest = (distance.abs() - speed).as_f64() / exact.cube().as_f64();
             seen.worst_place = seen.worst_place.max(rest / STEP as f64);
         }
+    }
+
+    /// The first tick at which the driver takes a step.
+    fn earliest(&self, direction: Direction) -> u64 {
+        let least = if self.turned_at_last(direction) {
+            self.least.reversal_ticks
+        } else {
+            self.least.step_ticks
+        };
+        self.last.map_or(0, |(last, _)| last.saturating_add(least))
+    }
+
+    fn turned_at_last(&self, direction: Direction) -> bool {
+        self.last.is_some_and(|(_, last)| last != direction)
+    }
+
+    /// In a row that does not turn round, a step back that has to wait is refused where the next place
+    /// or the end of the row comes before the driver has had its time.
+    fn check_too_quick(&self, ticks: u32, to: PvtKnot) {
+        let exact = Exact::new(self.knot, to, ticks);
+        let Some((_, last)) = self.last else {
+            return;
+        };
+        let sign = if last == Direction::Positive { -1 } else { 1 };
+        let goes_back = |knot: PvtKnot| i128::from(knot.velocity) * i128::from(sign) > 0;
+        let turns_round = !turns(&exact).is_empty();
+        if turns_round || !goes_back(self.knot) || !goes_back(to) {
+            return;
+        }
+        let next = i128::from(2 * self.steps + 3 * sign) * STEP / 2;
+        let MinIntervals {
+            step_ticks,
+            reversal_ticks,
+        } = self.least;
+        let earliest = self.earliest(last.reversed()).max(self.row_start) - self.row_start;
+        let n = i128::from(earliest) + i128::from(step_ticks.max(reversal_ticks)) + 3;
+        assert!(
+            n >= exact.ticks || I256::from(sign) * exact.past_place(n, next) > -exact.standstill(),
+            "a step back at {earliest} of {ticks} is refused"
+        );
     }
 
     /// What may be passed and come back from without a step, or before a step back may come.
@@ -347,6 +401,8 @@ impl Axis {
             let at = made.partition_point(|&(tick, _)| tick <= n) - 1;
             let off = exact.past_place(n, i128::from(made[at].1) * STEP).abs();
             let slack = I256::from(STEP / 2 + self.touch()) * exact.cube() + exact.standstill();
+            let waits = self.waited.filter(|(tick, _)| n < *tick);
+            let slack = slack + waits.map_or(I256::ZERO, |(_, distance)| distance);
             assert!(
                 off <= slack + exact.speed_near(n),
                 "at {n} of {ticks}: {off} off {} steps, {slack}",
