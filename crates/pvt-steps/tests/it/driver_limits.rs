@@ -1,6 +1,11 @@
 //! Rows that a driver cannot follow are refused with their place.
 
-use pvt_steps::{AxisSegments, MinIntervals, PvtRow, PvtSteps, Rate, RowError, StepDirTiming};
+use path_timing::{AxisLimits, Corner, Curve, Knot, Table};
+use pvt_steps::{
+    AxisSegments, MinIntervals, PvtQuantiser, PvtRow, PvtSteps, Rate, RowError, StepDirTiming,
+    StepScale,
+};
+use test_support::Random;
 
 use crate::common::rows::{LEAST, STEP, STEP_A_TICK, knot, steps};
 
@@ -59,6 +64,53 @@ fn a_step_back_waits_for_the_driver() {
         ],
     );
     assert_eq!(made, [(5000, 1), (5030, -1)]);
+}
+
+/// Polylines of ten sides whose corners are jumps, with an opto-isolated driver of 5 us before and
+/// after a change of direction: some were refused in the middle while no step back waited where it
+/// was late by more than 2^-8 steps.
+#[test]
+fn corners_with_jumps_turn_slow_drivers() {
+    const STEPS_PER_MM: f64 = 400.0;
+    const JUMP: [f64; 2] = [20.0; 2];
+    let timing = StepDirTiming {
+        pulse_ns: 2500,
+        pause_ns: 2500,
+        setup_ns: 5000,
+        hold_ns: 5000,
+    };
+    let rate = Rate::from_hz(72_000_000).unwrap();
+    let axis = AxisLimits {
+        speed: 150.0,
+        acceleration: 3000.0,
+        jerk: None,
+    };
+    let mut random = Random::new(1);
+    for _ in 0..50 {
+        let mut point = || [random.within(0.0, 20.0), random.within(0.0, 20.0)];
+        let points: [[f64; 2]; 11] = core::array::from_fn(|_| point());
+        let lines = points.windows(2).map(|ends| {
+            let line = Curve::line(ends[0], ends[1]).unwrap();
+            line.with_corner(Corner::Jump(JUMP))
+        });
+        let mut knots = [Knot::default(); 100];
+        let table = Table::plan(lines, [axis; 2], |_| 8, &mut knots).unwrap();
+        let scale = StepScale::new(STEPS_PER_MM).unwrap();
+        let mut rows = table.rows();
+        let start = rows.next().unwrap().position;
+        let quantiser = PvtQuantiser::new(rate, [scale; 2], start).unwrap();
+        let mut quantiser = quantiser.with_start_stop_speeds(JUMP);
+        let mut steps = PvtSteps::new(quantiser.knots(), timing.min_intervals(rate));
+        for row in rows {
+            let row = quantiser.row(row.time_s, row.position, row.velocity);
+            steps.push(&row.unwrap()).unwrap();
+            steps.by_ref().for_each(drop);
+        }
+        for (steps, mm) in steps.steps().into_iter().zip(points[10]) {
+            let steps = f64::from(i32::try_from(steps).unwrap());
+            assert!((steps - mm * STEPS_PER_MM).abs() <= 0.5);
+        }
+    }
 }
 
 #[test]
