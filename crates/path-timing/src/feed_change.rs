@@ -11,6 +11,7 @@ mod change;
 mod course;
 mod phases;
 mod ramped;
+mod root;
 
 pub(crate) use course::{At, Course};
 

@@ -1,5 +1,6 @@
 //! To another speed with limited jerk, or to rest, at a given knot.
 
+use super::root;
 use crate::number::sqrt;
 
 /// Three phases of constant jerk from a speed and an acceleration along the path to others. To
@@ -73,14 +74,14 @@ impl State {
     }
 }
 
-/// Halvings in a search for a jerk or a time.
+/// Jerks that are tried to find two that the wanted one lies between.
 const ROUNDS: u32 = 60;
 
 /// Of the largest jerk that there is: with it the acceleration would not fall below zero, and be
 /// 0/0.
 const MOST: f64 = 1.0 - 1e-6;
 
-/// By how much the jerk is changed to find two that the wanted one lies between.
+/// By how much the jerk is changed for that.
 const FACTOR: f64 = 4.0;
 
 /// κ where the acceleration only falls and rises again: the machine gains speed all the time, and
@@ -214,15 +215,8 @@ impl Phases {
             }
             low /= FACTOR;
         }
-        for _ in 0..ROUNDS {
-            let middle = sqrt(low * high);
-            if is_less(middle) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        let found = with(high);
+        let more = |jerk: f64| (with(jerk).end() - length) * kappa;
+        let found = with(root::between([low, high], length * ROUNDING, more));
         let is_found = (found.end() - length).abs() <= length * CLOSE;
         is_found.then_some(found)
     }
@@ -256,22 +250,22 @@ impl Phases {
         for (time, jerk) in self.phases {
             let (next, length) = state.after(time, jerk);
             if length >= left {
-                let (mut low, mut high) = (0.0, time);
-                for _ in 0..ROUNDS {
-                    let middle = (low + high) * 0.5;
-                    if state.after(middle, jerk).1 < left {
-                        low = middle;
-                    } else {
-                        high = middle;
-                    }
-                }
-                return state.after(high, jerk).0.speed.max(0.0);
+                let passed = |time| {
+                    let (next, length) = state.after(time, jerk);
+                    [length - left, next.speed]
+                };
+                let guess = time * (left / length);
+                let time = root::of_rising([0.0, time], guess, passed);
+                return state.after(time, jerk).0.speed.max(0.0);
             }
             (state, left) = (next, left - length);
         }
         self.last
     }
 }
+
+/// Relative rounding of the length that it takes.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Relative gap at which it takes the length wanted.
 const CLOSE: f64 = 1e-9;

@@ -1,5 +1,7 @@
 //! From one feed to another over some segments, by ramps of its rate.
 
+use super::root;
+
 /// A change of the feed over some segments, with ramps of its rate at both ends.
 ///
 /// ```text
@@ -34,9 +36,6 @@ const RAMPS: [[f64; 2]; 10] = [
     [0.2, 0.8],
     [0.65, 0.35],
 ];
-
-/// Halvings that find x to its last digit.
-const ROUNDS: u32 = 60;
 
 /// g and its integral from 0.
 fn shape([rise, fall]: [f64; 2], x: f64) -> [f64; 2] {
@@ -90,17 +89,12 @@ impl FeedChange {
     pub(super) fn step(&mut self, table_s: f64) -> f64 {
         self.table_s += table_s;
         let wanted = self.table_s / self.duration_s;
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..ROUNDS {
-            let x = (low + high) * 0.5;
-            let [_, reached] = self.values(x);
-            if reached < wanted {
-                low = x;
-            } else {
-                high = x;
-            }
-        }
-        let [feed, _] = self.values(high);
+        let passed = |x| {
+            let [feed, reached] = self.values(x);
+            [reached - wanted, feed]
+        };
+        let x = root::of_rising([0.0, 1.0], wanted.min(1.0), passed);
+        let [feed, _] = self.values(x);
         feed
     }
 }
