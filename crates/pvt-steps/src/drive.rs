@@ -146,7 +146,8 @@ impl<const N: usize, const W: usize> Drive<N, W> {
     /// than its length, its turns and slow ends ask for, 2 to 64.
     ///
     /// The motors stand where the first path begins. No axis is faster than its driver takes steps,
-    /// whatever its limit. After an error there are no steps, and the motors may be in motion:
+    /// whatever its limit; by how much its velocity jumps at a corner, the path's
+    /// [`Corner`](path_timing::Corner) says. After an error there are no steps, and the motors may be in motion:
     /// paths that are looked at whole when they are made, and go on where those before end, give
     /// none.
     ///
@@ -210,7 +211,8 @@ impl<const N: usize> AxesAt<N> {
         let quantiser = PvtQuantiser::new(rate, scales, first.position)?;
         Ok(Self {
             steps: PvtSteps::new(quantiser.knots(), timing.min_intervals(rate)),
-            quantiser,
+            // By how much velocities jump, the corners of the paths say.
+            quantiser: quantiser.with_start_stop_speeds([f64::INFINITY; N]),
         })
     }
 

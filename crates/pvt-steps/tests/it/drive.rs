@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use path_timing::{
-    AxisLimits, Curve, Knot, LookAhead, PlanError, Smoothed, Vertex, segments_within,
+    AxisLimits, Corner, Curve, Knot, LookAhead, PlanError, Smoothed, Vertex, segments_within,
 };
 use pvt_steps::{
     Direction, Drive, DriveError, PvtQuantiser, PvtSteps, Rate, ScaleError, Step, StepDirTiming,
@@ -40,6 +40,17 @@ fn steps(drive: &mut Drive<2>) -> Vec<Step> {
     steps.map(Result::unwrap).collect()
 }
 
+/// Where steps from 0 lead.
+fn end(steps: &[Step]) -> [i32; 2] {
+    steps.iter().fold([0; 2], |mut at, step| {
+        at[step.axis] += match step.direction {
+            Direction::Positive => 1,
+            Direction::Negative => -1,
+        };
+        at
+    })
+}
+
 const DEFAULT: usize = 64;
 
 #[test]
@@ -67,15 +78,6 @@ fn it_is_its_parts_one_after_the_other() {
 fn it_goes_there_and_back() {
     let mut drive = drive();
     let there = steps(&mut drive);
-    let end = |steps: &[Step]| {
-        steps.iter().fold([0_i32; 2], |mut at, step| {
-            at[step.axis] += match step.direction {
-                Direction::Positive => 1,
-                Direction::Negative => -1,
-            };
-            at
-        })
-    };
     let [x, y] = curves()[1].end().map(|mm| mm * STEPS_PER_MM);
     let [found_x, found_y] = end(&there).map(f64::from);
     assert!((found_x - x).abs() <= 0.5 && (found_y - y).abs() <= 0.5);
@@ -85,6 +87,25 @@ fn it_goes_there_and_back() {
     let back: Vec<_> = back.map(Result::unwrap).collect();
     assert!(back[0].ticks < there[there.len() - 1].ticks);
     assert_eq!(end(&back), end(&there).map(|steps| -steps));
+}
+
+/// The corner says by how much the velocities may jump, and turn round.
+#[test]
+fn corners_with_jumps_are_passed() {
+    let points = [[0.0, 0.0], [10.0, 1.0], [4.0, 3.0], [4.0, -2.0], [9.0, 0.0]];
+    let lines = |corner| {
+        let line = |ends: &[[f64; 2]]| Curve::line(ends[0], ends[1]).unwrap().with_corner(corner);
+        points.windows(2).map(line).collect::<Vec<_>>()
+    };
+    let last = |corner| {
+        let mut drive = drive();
+        let steps = drive.along(lines(corner), TOLERANCE_MM, Curve::departure);
+        let steps: Vec<_> = steps.map(Result::unwrap).collect();
+        assert_eq!(end(&steps), [720, 0]);
+        steps[steps.len() - 1].ticks
+    };
+    let [jumps, stops] = [Corner::Jump([5.0; 2]), Corner::Stop].map(last);
+    assert!(jumps < stops, "{jumps} {stops}");
 }
 
 /// More knots in sight are never slower, fewer brake earlier.
