@@ -1,6 +1,7 @@
 //! From paths to steps in one call: planned by `path-timing`, quantised, put out.
 
 mod fewest_segments;
+mod parts;
 
 use core::convert::Infallible;
 
@@ -8,12 +9,16 @@ use path_timing::{AxisLimits, Knot, LookAhead, Path, PlanError, Row, Span, segme
 use thiserror::Error;
 
 use self::fewest_segments::{Counted, FewestSegments};
+use self::parts::Parts;
 use crate::{
     KnotError, PvtQuantiser, PvtSteps, Rate, RowError, ScaleError, Step, StepDirTiming, StepScale,
 };
 
 /// Knots in sight, of some 170 bytes for two axes: enough to brake within as many segments.
 const KNOTS: usize = 64;
+
+/// Most ticks of a row, half of what it may have: its ends are rounded.
+const MAX_TICKS: f64 = 2_147_483_648.0;
 
 /// Why paths do not become steps. `E` is the path's own error.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -169,8 +174,10 @@ impl<const N: usize, const W: usize> Drive<N, W> {
             Ok(rows) => (Some(rows), None),
             Err(error) => (None, Some(Err(error))),
         };
-        let mut rows = refused.into_iter().chain(rows.into_iter().flatten());
+        let rows = refused.into_iter().chain(rows.into_iter().flatten());
         let (rate, scales, timing) = (self.rate, self.scales, self.timing);
+        let ticks_a_s = f64::from(rate.numerator()) / f64::from(rate.denominator());
+        let mut rows = Parts::new(rows, MAX_TICKS / ticks_a_s, scales);
         let mut axes: Option<AxesAt<N>> = None;
         let mut is_over = false;
         core::iter::from_fn(move || {

@@ -3,7 +3,8 @@
 use core::f64::consts::TAU;
 
 use path_timing::{
-    AxisLimits, Corner, Curve, Knot, LookAhead, PlanError, Smoothed, Vertex, segments_within,
+    AxisLimits, Corner, Curve, Knot, LookAhead, PlanError, Smoothed, ToolLimits, Vertex,
+    segments_within,
 };
 use pvt_steps::{
     Direction, Drive, DriveError, PvtQuantiser, PvtSteps, Rate, ScaleError, Step, StepDirTiming,
@@ -106,6 +107,30 @@ fn corners_with_jumps_are_passed() {
     };
     let [jumps, stops] = [Corner::Jump([5.0; 2]), Corner::Stop].map(last);
     assert!(jumps < stops, "{jumps} {stops}");
+}
+
+/// 40 mm at 0.02 mm/s last 2,000 s, a row of them far more than 2^32 ticks.
+#[test]
+fn a_slow_line_has_rows_of_any_time() {
+    const FEED: f64 = 0.02;
+    let rate = Rate::from_hz(72_000_000).unwrap();
+    let mut drive = Drive::new([LIMITS; 2], [STEPS_PER_MM; 2], rate).unwrap();
+    let tool = ToolLimits {
+        feed: FEED,
+        acceleration: None,
+    };
+    let [line, arc] = curves().map(|curve| curve.with_tool(tool));
+    let all_s = (line.length() + arc.length()) / FEED;
+    let steps = drive.along([line, arc], TOLERANCE_MM, Curve::departure);
+    let steps: Vec<_> = steps.map(Result::unwrap).collect();
+    let seconds = |ticks: u64| f64::from(u32::try_from(ticks >> 8).unwrap()) * 256.0 / 72e6;
+    let last_s = seconds(steps[steps.len() - 1].ticks);
+    assert!((last_s / all_s - 1.0).abs() < 1e-3, "{last_s} {all_s}");
+    // Gone along evenly, whatever the parts: from the first steps to the end of the line.
+    for pair in steps[100..3200].windows(2) {
+        let gap_s = seconds(pair[1].ticks - pair[0].ticks);
+        assert!((gap_s * FEED * STEPS_PER_MM - 1.0).abs() < 1e-4, "{gap_s}");
+    }
 }
 
 /// More knots in sight are never slower, fewer brake earlier.
@@ -288,9 +313,9 @@ fn what_is_wrong_is_named_in_place_of_a_step() {
     );
     assert!(steps.next().is_none());
     // More steps than there are numbers.
-    let mut drive = Drive::new([LIMITS; 2], [1e11; 2], rate()).unwrap();
-    let all = drive.along(curves(), TOLERANCE_MM, Curve::departure);
-    let error = all.last().unwrap().unwrap_err();
+    let mut drive = Drive::new([LIMITS; 2], [1e13; 2], rate()).unwrap();
+    let mut all = drive.along(curves(), TOLERANCE_MM, Curve::departure);
+    let error = all.next().unwrap().unwrap_err();
     assert!(matches!(error, DriveError::Knot(_)), "{error}");
 }
 
