@@ -75,6 +75,17 @@ impl Cubic {
         outer + 3.0 * fraction * rest * (b1 * rest + b2 * fraction)
     }
 
+    /// The velocity at a fraction 0..=1 of the duration, per second.
+    ///
+    /// ```text
+    /// v = v₀ + (a₀ + (a₁ - a₀) u/2) u T
+    /// ```
+    #[must_use]
+    pub fn velocity(&self, fraction: f64) -> f64 {
+        let [a0, a1] = self.accelerations();
+        self.v0 + (a0 + (a1 - a0) * fraction * 0.5) * fraction * self.duration_s
+    }
+
     /// The control points of its Bézier form: the cubic stays between the smallest and the largest.
     #[must_use]
     pub fn control_points(&self) -> [f64; 4] {

@@ -32,6 +32,7 @@ mod rows;
 mod segment;
 mod set_points;
 mod shaper;
+mod short_rows;
 mod span;
 mod stepping;
 mod stretch;
@@ -56,6 +57,7 @@ pub use row::Row;
 pub use rows::Rows;
 pub use set_points::{Cia402Scale, Cia402Target, SetPoint, SetPoints, TargetError};
 pub use shaper::{Impulse, Mode, Shaped, ShapedError, Shaper, ShaperError, TryRow};
+pub use short_rows::ShortRows;
 pub use span::Span;
 pub use table::{Accuracy, Table};
 pub use torque::{

@@ -118,10 +118,9 @@ impl<I: Iterator<Item: TryRow<Axes = A>>, A: Axes> SetPoints<I, A> {
             .zip(point.acceleration.as_mut_slice());
         for (((position, velocity), acceleration), cubic) in numbers.zip(Cubic::between(from, to)) {
             let [a0, a1] = cubic.accelerations();
-            let rise = (a1 - a0) * fraction;
             *position = cubic.position(fraction);
-            *velocity = cubic.v0 + (a0 + rise * 0.5) * self.since_s;
-            *acceleration = a0 + rise;
+            *velocity = cubic.velocity(fraction);
+            *acceleration = a0 + (a1 - a0) * fraction;
         }
         point
     }

@@ -1,15 +1,15 @@
 //! From paths to steps in one call: planned by `path-timing`, quantised, put out.
 
 mod fewest_segments;
-mod parts;
 
 use core::convert::Infallible;
 
-use path_timing::{AxisLimits, Knot, LookAhead, Path, PlanError, Row, Span, segments_within};
+use path_timing::{
+    AxisLimits, Knot, LookAhead, Path, PlanError, Row, ShortRows, Span, segments_within,
+};
 use thiserror::Error;
 
 use self::fewest_segments::{Counted, FewestSegments};
-use self::parts::Parts;
 use crate::{
     KnotError, PvtQuantiser, PvtSteps, Rate, RowError, ScaleError, Step, StepDirTiming, StepScale,
 };
@@ -19,6 +19,9 @@ const KNOTS: usize = 64;
 
 /// Most ticks of a row, half of what it may have: its ends are rounded.
 const MAX_TICKS: f64 = 2_147_483_648.0;
+
+/// Steps from 0 that there are numbers for.
+const MAX_STEPS: f64 = 2_147_483_648.0;
 
 /// Why paths do not become steps. `E` is the path's own error.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -177,7 +180,13 @@ impl<const N: usize, const W: usize> Drive<N, W> {
         let rows = refused.into_iter().chain(rows.into_iter().flatten());
         let (rate, scales, timing) = (self.rate, self.scales, self.timing);
         let ticks_a_s = f64::from(rate.numerator()) / f64::from(rate.denominator());
-        let mut rows = Parts::new(rows, MAX_TICKS / ticks_a_s, scales);
+        // Before anything of a row moves, however long it is.
+        let rows = rows.map(move |row| {
+            let row = row.map_err(DriveError::Plan)?;
+            check_end(&row, scales).map_err(DriveError::Knot)?;
+            Ok(row)
+        });
+        let mut rows = ShortRows::new(rows, MAX_TICKS / ticks_a_s);
         let mut axes: Option<AxesAt<N>> = None;
         let mut is_over = false;
         core::iter::from_fn(move || {
@@ -185,7 +194,7 @@ impl<const N: usize, const W: usize> Drive<N, W> {
                 if let Some(step) = axes.as_mut().and_then(|axes| axes.steps.next()) {
                     return Some(Ok(step));
                 }
-                let taken = rows.next()?.map_err(DriveError::Plan).and_then(|row| {
+                let taken = rows.next()?.and_then(|row| {
                     match &mut axes {
                         Some(axes) => axes.take(&row)?,
                         None => axes = Some(AxesAt::new(rate, scales, timing, &row)?),
@@ -200,6 +209,18 @@ impl<const N: usize, const W: usize> Drive<N, W> {
             None
         })
     }
+}
+
+/// Whether there are numbers for the steps at the end of a row.
+fn check_end<const N: usize>(row: &Row<[f64; N]>, scales: [StepScale; N]) -> Result<(), KnotError> {
+    let steps = row.position.iter().zip(scales);
+    let steps = steps.map(|(position, scale)| position * scale.steps_per_unit());
+    let beyond = steps
+        .enumerate()
+        .find(|(_, steps)| steps.abs() >= MAX_STEPS);
+    beyond.map_or(Ok(()), |(axis, position)| {
+        Err(KnotError::Position { axis, position })
+    })
 }
 
 /// Motors at the row that was taken last.

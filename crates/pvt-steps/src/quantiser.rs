@@ -33,7 +33,8 @@ pub enum KnotError {
         /// Velocity, in steps a tick.
         velocity: f64,
     },
-    /// A time that is no number, before the knot before, or 2^32 ticks after it.
+    /// A time that is no number, before the knot before, or 2^32 ticks after it: rows of path-timing
+    /// that last so long are cut by its `ShortRows`.
     #[error(
         "time {} s is not 0 to 2^32 - 1 whole ticks after {} s",
         SixDigits(*.time_s), SixDigits(*.last_s)

@@ -18,6 +18,7 @@ mod optimum;
 mod run;
 mod set_points;
 mod shaper;
+mod short_rows;
 mod single;
 mod slow_corners;
 mod smoothed;
