@@ -18,7 +18,9 @@ use crate::{Arm, Delta};
 /// length: what [`path_timing::Table`] plans.
 ///
 /// It is made by [`Delta::path`], which has looked at all of it. The next one goes on from it
-/// without a stop where the directions of their curves agree, as those of a line and a blend do.
+/// without a stop where the directions of their curves agree, as those of a line and a blend do,
+/// unless the curve's own corner is a stop; by how much an arm may jump
+/// [`with_corner`](Self::with_corner) says.
 ///
 /// ```
 /// use delta_kin::{Delta, DeltaPath, Dimensions};
@@ -40,6 +42,7 @@ use crate::{Arm, Delta};
 pub struct DeltaPath {
     delta: Delta,
     curve: Curve<3>,
+    corner: Corner<[f64; 3]>,
 }
 
 /// Nearest to the edge of the workspace, as a fraction of the span, that a path may come.
@@ -77,6 +80,7 @@ impl Delta {
         let path = DeltaPath {
             delta: *self,
             curve,
+            corner: path_timing::Path::corner(&curve).of_other_axes(),
         };
         let (mut s, mut there) = (0.0, path.look(0.0)?);
         while s < curve.length() {
@@ -91,6 +95,14 @@ impl DeltaPath {
     #[must_use]
     pub const fn curve(&self) -> &Curve<3> {
         &self.curve
+    }
+
+    /// The path with another corner at its end, such as the start-stop speeds of its motors in
+    /// rad/s. At first it is smooth, or a stop where that of the curve is one.
+    #[must_use]
+    pub const fn with_corner(mut self, corner: Corner<[f64; 3]>) -> Self {
+        self.corner = corner;
+        self
     }
 
     fn centre(&self, s: f64) -> Point3<f64> {
@@ -176,7 +188,7 @@ impl path_timing::Path for DeltaPath {
     }
 
     fn corner(&self) -> Corner<[f64; 3]> {
-        Corner::Smooth
+        self.corner
     }
 
     fn check(&self, span: &Span<[f64; 3]>) -> Result<(), DeltaPathError> {

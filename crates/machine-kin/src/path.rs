@@ -25,7 +25,9 @@ use turns::{Turns, at_turns};
 /// [`path_timing::Table`] plans.
 ///
 /// It is made by [`Machine::path`], which has looked at all of it. The next one goes on from it
-/// without a stop where the directions of their curves agree, as those of a line and a blend do.
+/// without a stop where the directions of their curves agree, as those of a line and a blend do,
+/// unless the curve's own corner is a stop; by how much an axis may jump
+/// [`with_corner`](Self::with_corner) says.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MachinePath<M: Machine<N>, const N: usize> {
     machine: M,
@@ -33,6 +35,7 @@ pub struct MachinePath<M: Machine<N>, const N: usize> {
     curve: Curve<N>,
     branch: M::Branch,
     turns: Turns<N>,
+    corner: Corner<[f64; N]>,
     /// What places of the curve are off by.
     rounding: f64,
     /// What is known beside all of it.
@@ -44,6 +47,14 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
     #[must_use]
     pub const fn curve(&self) -> &Curve<N> {
         &self.curve
+    }
+
+    /// The path with another corner at its end, such as the start-stop speeds of its motors in
+    /// its axes' units a second. At first it is smooth, or a stop where that of the curve is one.
+    #[must_use]
+    pub const fn with_corner(mut self, corner: Corner<[f64; N]>) -> Self {
+        self.corner = corner;
+        self
     }
 
     /// The branch that it is run on.
@@ -140,7 +151,7 @@ impl<M: Machine<N>, const N: usize> Path for MachinePath<M, N> {
     }
 
     fn corner(&self) -> Corner<[f64; N]> {
-        Corner::Smooth
+        self.corner
     }
 
     fn check(&self, span: &Span<[f64; N]>) -> Result<(), PathError<N>> {

@@ -31,6 +31,18 @@ pub enum Corner<A> {
     Jump(A),
 }
 
+impl<A> Corner<A> {
+    /// The corner of other axes that are led along the same curve: a stop is one for them, too. By
+    /// how much the velocity of a tool may jump says nothing of the motors that bring it there.
+    #[must_use]
+    pub const fn of_other_axes<B>(&self) -> Corner<B> {
+        match self {
+            Self::Stop => Corner::Stop,
+            Self::Smooth | Self::Jump(_) => Corner::Smooth,
+        }
+    }
+}
+
 /// A corner between two paths, as the planner sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Junction<A> {

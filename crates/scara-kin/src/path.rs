@@ -22,7 +22,9 @@ use turns::Turns;
 /// [`path_timing::Table`] plans.
 ///
 /// It is made by [`Arm::path`], which has looked at all of it. The next one goes on from it without
-/// a stop where the directions of their curves agree, as those of a line and a blend do.
+/// a stop where the directions of their curves agree, as those of a line and a blend do, unless the
+/// curve's own corner is a stop; by how much a joint may jump [`with_corner`](Self::with_corner)
+/// says.
 ///
 /// ```
 /// use path_timing::{Accuracy, AxisLimits, Curve, Knot, Table};
@@ -48,6 +50,7 @@ pub struct ArmPath {
     /// An elbow angle that all of the path is within half a turn of.
     elbow_angle: f64,
     shoulder: Turns,
+    corner: Corner<[f64; 2]>,
 }
 
 /// The joints at a place, each at the whole turn nearest to `near`.
@@ -68,6 +71,14 @@ impl ArmPath {
     #[must_use]
     pub const fn curve(&self) -> &Curve<2> {
         &self.curve
+    }
+
+    /// The path with another corner at its end, such as the start-stop speeds of its motors in
+    /// rad/s. At first it is smooth, or a stop where that of the curve is one.
+    #[must_use]
+    pub const fn with_corner(mut self, corner: Corner<[f64; 2]>) -> Self {
+        self.corner = corner;
+        self
     }
 
     /// The joints at the arc length `s`.
@@ -142,7 +153,7 @@ impl Path for ArmPath {
     }
 
     fn corner(&self) -> Corner<[f64; 2]> {
-        Corner::Smooth
+        self.corner
     }
 
     fn check(&self, span: &Span<[f64; 2]>) -> Result<(), ArmPathError> {

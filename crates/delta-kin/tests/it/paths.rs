@@ -6,7 +6,7 @@ use core::f64::consts::FRAC_PI_2;
 use delta_kin::nalgebra::{Point3, Vector3};
 use delta_kin::{Arm, ArmRange, Delta, DeltaPath, DeltaPathError, InverseError, ZAxis};
 use path_timing::{
-    Accuracy, AxisLimits, Cubic, Curve, Knot, Path, PlanError, Row, Span, Table, ToolLimits,
+    Accuracy, AxisLimits, Corner, Cubic, Curve, Knot, Path, PlanError, Row, Span, Table, ToolLimits,
 };
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
@@ -426,4 +426,35 @@ fn a_curve_longer_than_any_in_the_workspace_is_no_endless_walk() {
         error.unwrap_err().to_string(),
         "the curve is 1e9 long, within the workspace at most 42300"
     );
+}
+
+/// A stop of the platform is one of the arms, which jump by what their motors start and stop with.
+#[test]
+fn a_stop_of_the_platform_stops_the_arms() {
+    const JUMP: f64 = 0.3;
+    let [first, second] = [
+        line([-50.0, 0.0, -280.0], [0.0, 0.0, -280.0]),
+        line([0.0, 0.0, -280.0], [50.0, 0.0, -280.0]),
+    ];
+    let turn = line([0.0, 0.0, -280.0], [0.0, 50.0, -280.0]);
+    let path = |curve| thesis().path(curve).unwrap();
+    let jumping = path(first).with_corner(Corner::Jump([JUMP; 3]));
+    let stopped = path(first.with_corner(Corner::Stop));
+    let passed_at = |paths: [DeltaPath; 2]| {
+        let mut knots = [Knot::default(); 100];
+        let table = Table::plan(paths, [ARM; 3], |_| 20, &mut knots).unwrap();
+        // The last of the first path's rows, and the first of the second's where arms jump.
+        let rows = table.rows().filter(|row| row.leg == 0 || row.s <= 0.0);
+        rows.skip(20).map(|row| row.velocity).collect::<Vec<_>>()
+    };
+    assert_ne!(passed_at([path(first), path(second)]), [[0.0; 3]]);
+    assert_eq!(passed_at([stopped, path(second)]), [[0.0; 3]]);
+    assert_eq!(passed_at([path(first), path(turn)]), [[0.0; 3]]);
+    let velocities = passed_at([jumping, path(turn)]);
+    let [before, after] = velocities[..] else {
+        panic!("{velocities:?}")
+    };
+    let jump =
+        (before.into_iter().zip(after)).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+    assert!((jump - JUMP).abs() < 1e-9, "{jump}");
 }

@@ -1,6 +1,6 @@
 //! Looking at all of a curve before it is a path.
 
-use path_timing::{Curve, CurveMotion};
+use path_timing::{Curve, CurveMotion, Path};
 
 use super::corridor::Beside;
 use super::stretch::{ROUNDING, Stretch};
@@ -41,6 +41,7 @@ impl<M: Machine<N>, const N: usize> MachinePath<M, N> {
             curve,
             branch,
             turns: Turns::new(previous),
+            corner: Path::corner(&curve).of_other_axes(),
             rounding: size * ROUNDING,
             beside: None,
         };

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use machine_kin::path_timing::{
-    AxisLimits, Curve, FeedCeiling, Knot, LookAhead, Path, Promise, Row, Table, Verifier,
+    AxisLimits, Corner, Curve, FeedCeiling, Knot, LookAhead, Path, Promise, Row, Table, Verifier,
     segments_within,
 };
 use machine_kin::{
@@ -317,4 +317,36 @@ fn every_machine_runs_holds_and_streams() {
         turned,
         Elbow::Right,
     );
+}
+
+/// A stop of the tool is one of the axes, which jump by what their motors start and stop with.
+#[test]
+fn a_stop_of_the_tool_stops_the_axes() {
+    const JUMP: f64 = 0.2;
+    let machine = five_bar();
+    let [first, second] = [
+        line([-40.0, 150.0], [0.0, 150.0]),
+        line([0.0, 150.0], [40.0, 150.0]),
+    ];
+    let turn = line([0.0, 150.0], [0.0, 180.0]);
+    let path = |curve| machine.path(curve, OUTWARDS).unwrap();
+    let jumping = path(first).with_corner(Corner::Jump([JUMP; 2]));
+    let stopped = path(first.with_corner(Corner::Stop));
+    let passed_at = |paths: [MachinePath<FiveBar, 2>; 2]| {
+        let mut knots = [Knot::default(); 100];
+        let limits = limits(&machine);
+        let table = Table::plan(paths, limits, |_| 20, &mut knots).unwrap();
+        // The last of the first path's rows, and the first of the second's where axes jump.
+        let rows = table.rows().filter(|row| row.leg == 0 || row.s <= 0.0);
+        rows.skip(20).map(|row| row.velocity).collect::<Vec<_>>()
+    };
+    assert_ne!(passed_at([path(first), path(second)]), [[0.0; 2]]);
+    assert_eq!(passed_at([stopped, path(second)]), [[0.0; 2]]);
+    assert_eq!(passed_at([path(first), path(turn)]), [[0.0; 2]]);
+    let velocities = passed_at([jumping, path(turn)]);
+    let [before, after] = velocities[..] else {
+        panic!("{velocities:?}")
+    };
+    let jump = [0, 1].map(|axis| (before[axis] - after[axis]).abs());
+    assert!((jump[0].max(jump[1]) - JUMP).abs() < 1e-9, "{jump:?}");
 }

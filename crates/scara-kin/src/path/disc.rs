@@ -160,7 +160,7 @@ impl Path for DiscPath {
     }
 
     fn corner(&self) -> Corner<[f64; 3]> {
-        Corner::Smooth
+        self.arm_path.corner().of_other_axes()
     }
 
     fn check(&self, span: &Span<[f64; 3]>) -> Result<(), ArmPathError> {

@@ -1,7 +1,7 @@
 //! The walk along a curve that makes it a path of the joints.
 
 use nalgebra::Vector2;
-use path_timing::Curve;
+use path_timing::{Curve, Path};
 
 use super::swing::{Between, Swing};
 use super::turns::Turns;
@@ -70,6 +70,7 @@ impl Arm {
             elbow,
             elbow_angle: start.elbow,
             shoulder: Turns::new(start.shoulder),
+            corner: Path::corner(&curve).of_other_axes(),
         };
         let (mut s, mut joints) = (0.0, start);
         while s < curve.length() {

@@ -1,5 +1,6 @@
 //! Curves as paths of the joints: the tool on the cubics that run, limits, the disc.
 
+mod corners;
 mod refusals;
 mod single;
 
