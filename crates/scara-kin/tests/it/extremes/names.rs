@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-const TESTS: [&str; 10] = [
+const TESTS: [&str; 11] = [
     include_str!("curves.rs"),
     include_str!("dynamics.rs"),
     include_str!("inverse.rs"),
@@ -12,6 +12,7 @@ const TESTS: [&str; 10] = [
     include_str!("tools.rs"),
     include_str!("../calibration.rs"),
     include_str!("../each.rs"),
+    include_str!("../paths/corners.rs"),
     include_str!("../paths/single.rs"),
 ];
 
