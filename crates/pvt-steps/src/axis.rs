@@ -42,10 +42,11 @@ const TOLERANCE: u64 = 7 << 28;
 /// 10 to -10 mm/s on 400 steps/mm is 0.04 steps further after 10 us.
 ///
 /// # How near to the cubic
-/// Each step comes less than a tick from the time at which the row's exact cubic passes its place,
-/// where the axis moves by u and more in a tick; elsewhere |q - (k + 1/2)| at the tick of the step
-/// is at most what the axis moves in a tick, and u. Here u is 2^-40 steps, or 2^-47 of the greatest
-/// of the row's travel and its duration times its velocities, if that is more than 128 steps.
+/// Each step but one back that waits comes less than a tick from the time at which the row's exact
+/// cubic passes its place, where the axis moves by u and more in a tick; elsewhere
+/// |q - (k + 1/2)| at the tick of the step is at most what the axis moves in a tick, and u. Here u
+/// is 2^-40 steps, or 2^-47 of the greatest of the row's travel and its duration times its
+/// velocities, if that is more than 128 steps.
 ///
 /// Proof. No root is searched for each step. Let s be the fraction of the row's time, and
 /// q = d0 + d1 σ + d2 σ² + d3 σ³ round a centre `s_c` = s - σ with d1 > 0. For the positions

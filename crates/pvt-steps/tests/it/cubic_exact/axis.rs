@@ -53,8 +53,10 @@ impl Wanted {
             // What is made late: a place that was passed already, or a step that waits for the
             // driver, which counts from the one before; where that has no place in time, neither
             // has this one.
-            let as_due = distance <= self.late + I256::from(2) * self.exact.speed_near(n)
-                && (ticks.abs_diff(self.ticks) <= 1 || wait.abs_diff(self.wait) <= 2);
+            let apart = ticks.abs_diff(self.ticks);
+            let on = I256::from(apart.max(2)) * self.exact.speed_near(n);
+            let as_due =
+                distance <= self.late + on && (apart <= 1 || wait.abs_diff(self.wait) <= 2);
             assert!(
                 (by_place && !moves) || as_due,
                 "{ticks}, not {}; {n} of {}: off {distance}, velocity {v}, turns {:?}",
