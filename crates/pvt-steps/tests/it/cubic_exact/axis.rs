@@ -23,6 +23,8 @@ struct Wanted {
     wait: u64,
     /// How far its place may be passed, times T³.
     late: I256,
+    /// Whether it waits for the driver.
+    waits: bool,
 }
 
 impl Wanted {
@@ -43,7 +45,7 @@ impl Wanted {
         let v = sign * self.exact.velocity(n);
         let moves = v > self.exact.standstill() && !self.exact.turns_near(n);
         if off(n - 1) <= 0 && off(n + 1) >= 0 {
-            if moves && self.exact.is_steady(n) {
+            if moves && self.exact.is_steady(n) && !self.waits {
                 let error = (sign * self.exact.past_place(n, self.place)).as_f64() / v.as_f64();
                 seen.joined_worst_ticks = seen.joined_worst_ticks.max(error.abs());
             }
@@ -222,6 +224,7 @@ impl Axis {
             ticks,
             wait: ticks - self.last.map_or(0, |(last, _)| last),
             late,
+            waits,
         });
         let earliest = self.earliest(direction);
         assert!(
@@ -266,7 +269,7 @@ impl Axis {
                 exact.ticks
             );
             let error = (distance.as_f64() / v.as_f64()).abs();
-            if exact.is_steady(n) {
+            if exact.is_steady(n) && !waits {
                 seen.worst_ticks = seen.worst_ticks.max(error);
             }
         } else {
