@@ -20,9 +20,6 @@ const KNOTS: usize = 64;
 /// Most ticks of a row, half of what it may have: its ends are rounded.
 const MAX_TICKS: f64 = 2_147_483_648.0;
 
-/// Steps from 0 that there are numbers for.
-const MAX_STEPS: f64 = 2_147_483_648.0;
-
 /// Why paths do not become steps. `E` is the path's own error.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -155,9 +152,9 @@ impl<const N: usize, const W: usize> Drive<N, W> {
     ///
     /// The motors stand where the first path begins. No axis is faster than its driver takes steps,
     /// whatever its limit; by how much its velocity jumps at a corner, the path's
-    /// [`Corner`](path_timing::Corner) says. After an error there are no steps, and the motors may be in motion:
-    /// paths that are looked at whole when they are made, and go on where those before end, give
-    /// none.
+    /// [`Corner`](path_timing::Corner) says. After an error there are no steps, and the motors may
+    /// be in motion: paths that are looked at whole when they are made, and go on where those before
+    /// end, give none.
     ///
     /// # Errors
     /// [`DriveError`] in place of a step, the last item then.
@@ -180,10 +177,10 @@ impl<const N: usize, const W: usize> Drive<N, W> {
         let rows = refused.into_iter().chain(rows.into_iter().flatten());
         let (rate, scales, timing) = (self.rate, self.scales, self.timing);
         let ticks_a_s = f64::from(rate.numerator()) / f64::from(rate.denominator());
-        // Before anything of a row moves, however long it is.
         let rows = rows.map(move |row| {
             let row = row.map_err(DriveError::Plan)?;
-            check_end(&row, scales).map_err(DriveError::Knot)?;
+            // There are numbers for the steps at its end, before any of its parts moves.
+            PvtQuantiser::new(rate, scales, row.position)?;
             Ok(row)
         });
         let mut rows = ShortRows::new(rows, MAX_TICKS / ticks_a_s);
@@ -209,18 +206,6 @@ impl<const N: usize, const W: usize> Drive<N, W> {
             None
         })
     }
-}
-
-/// Whether there are numbers for the steps at the end of a row.
-fn check_end<const N: usize>(row: &Row<[f64; N]>, scales: [StepScale; N]) -> Result<(), KnotError> {
-    let steps = row.position.iter().zip(scales);
-    let steps = steps.map(|(position, scale)| position * scale.steps_per_unit());
-    let beyond = steps
-        .enumerate()
-        .find(|(_, steps)| steps.abs() >= MAX_STEPS);
-    beyond.map_or(Ok(()), |(axis, position)| {
-        Err(KnotError::Position { axis, position })
-    })
 }
 
 /// Motors at the row that was taken last.

@@ -1,5 +1,5 @@
-//! An arm draws a hexagon whose corners are stops, and whose corners its motors jump round: by
-//! what a stepper starts and stops with at once.
+//! An arm draws a hexagon twice: with a stop at each corner, and with motors that jump round it, by
+//! the speed that steppers start and stop with.
 //!
 //! `cargo run -p scara-kin --features path-timing --example jump_round_corners`
 #![expect(clippy::print_stdout, reason = "that is what an example is for")]

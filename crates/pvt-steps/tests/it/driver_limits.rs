@@ -41,20 +41,18 @@ fn a_step_back_waits_for_the_driver() {
     assert_eq!(made[..2], [(50, 1), (80, -1)]);
     assert!(made[2].0 == 150 && made.iter().all(|step| step.0 == 50 || step.1 == -1));
     // At a step in 40 ticks the next one would come 8 ticks after it.
-    let v = STEP_A_TICK / 40;
-    let [top, back, on] = [(1, v), (1, -v), (-9, -v)].map(|(halves, v)| knot(halves * STEP / 2, v));
+    let (v, top) = (STEP_A_TICK / 40, STEP / 2 + 1);
     let mut axis = AxisSegments::new(knot(STEP / 4, v), LEAST);
-    axis.push(10, knot(top.position + 1, v)).unwrap();
+    axis.push(10, knot(top, v)).unwrap();
     axis.by_ref().for_each(drop);
-    axis.push(0, knot(top.position + 1, back.velocity)).unwrap();
-    let refused = axis.push(200, on);
+    axis.push(0, knot(top, -v)).unwrap();
+    let refused = axis.push(200, knot(top - 5 * STEP, -v));
     assert!(
         matches!(refused, Err(RowError::ReversalTooQuick { ticks: 40, .. })),
         "{refused:?}"
     );
     // A hundredth as fast it is past by 0.003 steps: the step waits.
-    let v = STEP_A_TICK / 100;
-    let v = v / 100;
+    let v = STEP_A_TICK / 10_000;
     let made = steps(
         knot(0, v),
         &[
