@@ -10,6 +10,7 @@ use path_timing::{
 use thiserror::Error;
 
 use self::fewest_segments::{Counted, FewestSegments};
+use crate::quantiser::hz;
 use crate::{
     KnotError, PvtQuantiser, PvtSteps, Rate, RowError, ScaleError, Step, StepDirTiming, StepScale,
 };
@@ -133,7 +134,7 @@ impl<const N: usize, const W: usize> Drive<N, W> {
     fn limits_of_drivers(&self) -> [AxisLimits; N] {
         let min_intervals = self.timing.min_intervals(self.rate);
         let least_ticks = u32::try_from(min_intervals.step_ticks).map_or(f64::INFINITY, f64::from);
-        let rate_hz = f64::from(self.rate.numerator()) / f64::from(self.rate.denominator());
+        let rate_hz = hz(self.rate);
         let most_hz = rate_hz / (least_ticks + 3.0);
         let mut limits = self.limits;
         for (axis, scale) in limits.iter_mut().zip(&self.scales) {
@@ -176,14 +177,13 @@ impl<const N: usize, const W: usize> Drive<N, W> {
         };
         let rows = refused.into_iter().chain(rows.into_iter().flatten());
         let (rate, scales, timing) = (self.rate, self.scales, self.timing);
-        let ticks_a_s = f64::from(rate.numerator()) / f64::from(rate.denominator());
         let rows = rows.map(move |row| {
             let row = row.map_err(DriveError::Plan)?;
             // There are numbers for the steps at its end, before any of its parts moves.
             PvtQuantiser::new(rate, scales, row.position)?;
             Ok(row)
         });
-        let mut rows = ShortRows::new(rows, MAX_TICKS / ticks_a_s);
+        let mut rows = ShortRows::new(rows, MAX_TICKS / hz(rate));
         let mut axes: Option<AxesAt<N>> = None;
         let mut is_over = false;
         core::iter::from_fn(move || {

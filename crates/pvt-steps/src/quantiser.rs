@@ -171,7 +171,7 @@ impl<const N: usize> PvtQuantiser<N> {
         positions: [f64; N],
     ) -> Result<Self, KnotError> {
         let mut quantiser = Self {
-            tick_hz: f64::from(tick_rate.numerator()) / f64::from(tick_rate.denominator()),
+            tick_hz: hz(tick_rate),
             steps_per_unit: scales.map(StepScale::steps_per_unit),
             start_stop: [0.0; N],
             last_s: 0.0,
@@ -323,6 +323,11 @@ impl<const N: usize> PvtQuantiser<N> {
         }
         motions
     }
+}
+
+/// A rate in Hz.
+pub(crate) fn hz(rate: Rate) -> f64 {
+    f64::from(rate.numerator()) / f64::from(rate.denominator())
 }
 
 /// Position in steps, velocity in steps a tick.
