@@ -35,8 +35,8 @@ impl<A: Axes> Course<'_, A> {
         })
     }
 
-    /// A stop to the next knot that crawls, or the one that ends where the course rests itself if that
-    /// is far sooner.
+    /// A stop to the next knot that crawls, or the one that ends where the course rests itself if
+    /// that is far sooner.
     #[cold]
     #[inline(never)]
     fn sooner_with_its_rest(&self, at: At, from: f64, found: Change) -> Change {
@@ -46,8 +46,8 @@ impl<A: Axes> Course<'_, A> {
             .unwrap_or(found)
     }
 
-    /// A stop over many segments began where the table left little of the limits: the one that begins
-    /// here if it ends sooner.
+    /// A stop over many segments began where the table left little of the limits: the one that
+    /// begins here if it ends sooner.
     #[cold]
     #[inline(never)]
     pub(super) fn sooner(&self, at: At, long: Change) -> Change {
