@@ -50,6 +50,8 @@ pub(crate) struct Segment<A: Axes, R: Real = f64> {
     ends: [R; 2],
     /// Acceleration of the tool: coefficients of y and z.
     tool: [R; 2],
+    /// What it may be off by rounding: coefficient of y.
+    tool_noise: R,
 }
 
 /// Relative rounding of the terms of an acceleration, from the positions on to the numbers that a
@@ -126,6 +128,8 @@ impl<A: Axes, R: Real> Segment<A, R> {
             let per_second2 = R::of(to.ds) * R::of(tool.acceleration);
             let used = R::of(2.0) * margin::<R>() / per_second2;
             segment.tool = [R::of(tool.change) * used, used];
+            // As of an axis whose slopes are the tool's.
+            segment.tool_noise = noise::<R>() * R::of(1.5) * used;
         }
         segment
     }
@@ -142,6 +146,7 @@ impl<A: Axes, R: Real> Segment<A, R> {
             axes: A::filled(AxisLoad::NONE),
             ends: [R::ZERO; 2],
             tool: [R::ZERO; 2],
+            tool_noise: R::ZERO,
         };
         let [from_end, to_end] = &mut segment.ends;
         let positions = (from.position.as_slice().iter()).zip(to.position.as_slice());
@@ -175,7 +180,8 @@ impl<A: Axes, R: Real> Segment<A, R> {
             fastest = larger(fastest, (e * w0 + f * w1).abs());
         }
         let [c, d] = self.tool;
-        hardest = larger(hardest, (c * y + d * z).abs());
+        let noise = self.tool_noise * y * R::of(ROOT_NOISE);
+        hardest = larger(hardest, (c * y + d * z).abs() + noise);
         hardest.max(fastest * fastest)
     }
 
@@ -220,27 +226,11 @@ impl<A: Axes, R: Real> Segment<A, R> {
             }
         }
         for axis in A::each(&self.axes) {
-            for [c, d] in axis.accelerations {
-                let d = if end == End::From { -d } else { d };
-                let (y, z) = products(other, speed);
-                let (value, noise) = (c * y + d * z, axis.noise * y);
-                if value + noise > R::ONE {
-                    speed = lower(c + axis.noise, d, other, speed);
-                } else if value - noise < -R::ONE {
-                    speed = lower(axis.noise - c, -d, other, speed);
-                }
+            for terms in axis.accelerations {
+                speed = below(terms, axis.noise, end, [other, speed]);
             }
         }
-        let [c, d] = self.tool;
-        let d = if end == End::From { -d } else { d };
-        let (y, z) = products(other, speed);
-        let value = c * y + d * z;
-        if value > R::ONE {
-            speed = lower(c, d, other, speed);
-        } else if value < -R::ONE {
-            speed = lower(-c, -d, other, speed);
-        }
-        speed
+        below(self.tool, self.tool_noise, end, [other, speed])
     }
 
     /// The pair of speeds with which the segment takes the least time, at most `ceiling` at its end
@@ -338,7 +328,10 @@ impl<A: Axes, R: Real> Segment<A, R> {
         }
         let [c, d] = self.tool;
         let value = c + d * r;
-        largest.raise(value.abs(), if value < R::ZERO { -d } else { d });
+        largest.raise(
+            value.abs() + self.tool_noise,
+            if value < R::ZERO { -d } else { d },
+        );
         let [from, to] = self.ends;
         let [from, to] = [from.max(ends[0]), to.max(ends[1])];
         fastest.raise(from * (R::ONE - r), -from);
@@ -461,6 +454,22 @@ impl<R: Real> Tangent<R> {
 fn products<R: Real>(w0: R, w1: R) -> (R, R) {
     let (mean, rise) = ((w0 + w1) * R::of(0.5), (w1 - w0) * R::of(0.5));
     (mean * mean, mean * rise)
+}
+
+/// The highest speed at one end, at most the second one, that an acceleration allows with the first
+/// one at the other end, if a limit from above forbids the second.
+#[inline]
+fn below<R: Real>([c, d]: [R; 2], noise: R, end: End, [other, speed]: [R; 2]) -> R {
+    let d = if end == End::From { -d } else { d };
+    let (y, z) = products(other, speed);
+    let (value, noise_y) = (c * y + d * z, noise * y);
+    if value + noise_y > R::ONE {
+        lower(c + noise, d, other, speed)
+    } else if value - noise_y < -R::ONE {
+        lower(noise - c, -d, other, speed)
+    } else {
+        speed
+    }
 }
 
 /// The speed w below `speed` at which c (w + o)²/4 + d (w² - o²)/4 = 1, if it does not hold

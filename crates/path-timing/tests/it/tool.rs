@@ -217,6 +217,39 @@ fn a_hold_and_a_higher_feed_keep_the_acceleration() {
     }
 }
 
+/// However dense the knots, speeds that rounding moves do not keep the tool from its acceleration:
+/// `√(L / A)` up and the same down, in a table and in a stream.
+#[test]
+fn the_tool_keeps_its_acceleration_on_any_number_of_segments() {
+    const LENGTH: f64 = 6.0;
+    const SEGMENTS: [u32; 5] = [50, 200, 800, 3200, 12_800];
+    for acceleration in [3.0, 290.0_f64] {
+        let tool = ToolLimits {
+            feed: 84.0,
+            acceleration: Some(acceleration),
+        };
+        let line = Curve::line([0.0, 0.0], [LENGTH, 0.0]).unwrap();
+        let line = line.with_tool(tool);
+        let shortest_s = 2.0 * (LENGTH / acceleration).sqrt();
+        for segments in SEGMENTS {
+            let mut knots = vec![Knot::default(); 13_000];
+            let table = Table::plan([line], [AXIS; 2], |_| segments, &mut knots).unwrap();
+            let ratio = table.duration_s() / shortest_s;
+            assert!(
+                ratio < 1.001,
+                "{acceleration} mm/s², {segments}: {ratio} times"
+            );
+            let motion = LookAhead::new([line], [AXIS; 2], |_| Ok(segments), &mut knots).unwrap();
+            let end = motion.last().unwrap().unwrap();
+            let ratio = end.time_s / shortest_s;
+            assert!(
+                ratio < 1.001,
+                "stream, {acceleration} mm/s², {segments}: {ratio} times"
+            );
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
