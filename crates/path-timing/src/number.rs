@@ -34,6 +34,18 @@ pub(crate) trait Real:
 
     /// The nearest number.
     fn of(x: f64) -> Self;
+
+    /// A number that is not above, next to it.
+    #[inline(always)]
+    fn at_most(x: f64) -> Self {
+        let near = Self::of(x);
+        if near.into() > x {
+            near * (Self::ONE - Self::EPSILON)
+        } else {
+            near
+        }
+    }
+
     fn abs(self) -> Self;
     fn max(self, other: Self) -> Self;
     fn min(self, other: Self) -> Self;

@@ -29,7 +29,7 @@ fn backward<A: Axes, R: Real>(limits: &Reciprocals<A, R>, knots: &mut [Knot<A>])
     for from in earlier {
         if to.ds > 0.0 {
             let segment = Segment::new(limits, from, to, ToolTimes::ONE);
-            let (w0, w1) = segment.begin(R::of(to.speed), R::of(from.cap));
+            let (w0, w1) = segment.begin(R::of(to.speed), R::at_most(from.cap));
             let ratio = if w0 > R::ZERO { w1 / w0 } else { R::ZERO };
             (from.speed, from.ratio) = (w0.into(), ratio.into());
         } else {
@@ -49,7 +49,8 @@ fn forward<A: Axes, R: Real>(limits: &Reciprocals<A, R>, knots: &mut [Knot<A>]) 
         to.speed = if to.ds > 0.0 {
             let segment = Segment::new(limits, from, to, ToolTimes::ONE);
             let [w0, ceiling, ratio] = [from.speed, to.speed, from.ratio].map(R::of);
-            segment.end(w0, ceiling, ratio).into()
+            // A speed times a ratio is rounded, in single precision by more than a motor may jump.
+            segment.end(w0, ceiling, ratio).min(ceiling).into()
         } else {
             from.speed
         };

@@ -73,6 +73,16 @@ fn velocities_jump_by_what_motors_start_with() {
         assert!(time_s < before_s);
         before_s = time_s;
     }
+    // Not passed by the rounding of single precision either.
+    for turn in (0..20).map(|n| 0.01 + 0.003 * f64::from(n)) {
+        let start_stop = [turn, 200.0 * turn];
+        let legs = lines(&points, Corner::Jump(start_stop), None);
+        let mut knots = [Knot::default(); MOST];
+        let table = Table::plan_in_f32(&legs, LIMITS, |_| 100, &mut knots).unwrap();
+        let rows: Vec<_> = table.rows().collect();
+        check_limits(&LIMITS, Some(&start_stop), &rows);
+        assert!(!corner_rows(&rows)[0].is_at_rest());
+    }
     // Motors that start at any speed limit nothing.
     let (_, rows) = planned(&points, Corner::Jump([1e9; 2]), 100);
     check_limits(&LIMITS, Some(&[1e9; 2]), &rows);
