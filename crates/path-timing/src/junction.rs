@@ -24,10 +24,9 @@ pub enum Corner<A> {
     /// w ≤ δᵢ / |p₁ᵢ - p₀ᵢ|
     /// ```
     ///
-    /// w is the speed of the parameter, p₀ᵢ and p₁ᵢ are the slopes before and after the corner. An
-    /// axis with a limit of jerk has no acceleration on either side of the jump: where its path
-    /// bends there, as an arm's does along a line, the jump is the slower the shorter the segments
-    /// beside it are.
+    /// w is the speed of the parameter, p₀ᵢ and p₁ᵢ are the slopes before and after the corner. With
+    /// a limit of jerk that speed is constant on either side of the jump: an axis has only the
+    /// acceleration there that its path's bend asks for at that speed, none along a line.
     Jump(A),
 }
 

@@ -5,8 +5,13 @@
 //! path is asked for the places that the rows name. No line of it is used by the planner, nor the
 //! other way round.
 
-use trig_kernels::SixDigits;
+mod motion;
+mod place;
+mod violation;
 
+use self::motion::{Motion, bends, of_axis};
+use self::place::Place;
+pub use self::violation::Violation;
 use crate::number::{cube_root, sqrt};
 use crate::{Axes, AxisLimits, Path, Row, Span};
 
@@ -26,102 +31,6 @@ pub struct Promise<A: Axes> {
     /// The limits of the tool that paths have are kept, with this many times its feed; none where
     /// nothing is promised of a tool.
     pub tool_feed: Option<f64>,
-}
-
-/// A promise that rows break. `E` is the path's own error.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum Violation<E> {
-    /// A limit of an axis is passed in the segment up to a time.
-    #[error("axis {axis}, up to {} s: {name} reaches {}, the limit is {}", SixDigits(*.time_s), SixDigits(*.value), SixDigits(*.limit))]
-    Limit {
-        /// The axis, from 0.
-        axis: usize,
-        /// Which: `speed`, `acceleration`, `jerk` or `velocity jump`.
-        name: &'static str,
-        /// Time of the row at the end of the segment.
-        time_s: f64,
-        /// The largest value.
-        value: f64,
-        /// The limit.
-        limit: f64,
-    },
-    /// A limit of the tool is passed at a row, or by its mean acceleration from the row before.
-    #[error("tool, up to {} s: {name} reaches {}, the limit is {}", SixDigits(*.time_s), SixDigits(*.value), SixDigits(*.limit))]
-    Tool {
-        /// Which: `feed` or `acceleration`.
-        name: &'static str,
-        /// Time of the row.
-        time_s: f64,
-        /// The largest value.
-        value: f64,
-        /// The limit.
-        limit: f64,
-    },
-    /// A position or a velocity is not that of the path at the place that the row names.
-    #[error("axis {axis}, at {} s: {name} is {} off the path", SixDigits(*.time_s), SixDigits(*.by))]
-    OffPath {
-        /// The axis, from 0.
-        axis: usize,
-        /// Which: `position` or `velocity`.
-        name: &'static str,
-        /// Time of the row.
-        time_s: f64,
-        /// By how much.
-        by: f64,
-    },
-    /// The parameter of the path turns back on a segment: its speed at an end times the duration is
-    /// negative or more than three times the length.
-    #[error("up to {} s: the path turns back; {} times the length", SixDigits(*.time_s), SixDigits(*.times))]
-    TurnsBack {
-        /// Time of the row at the end of the segment.
-        time_s: f64,
-        /// The speed at an end times the duration, over the length.
-        times: f64,
-    },
-    /// The tool departs by more than was promised.
-    #[error("up to {} s: a departure of {}, {} is promised", SixDigits(*.time_s), SixDigits(*.departure), SixDigits(*.promised))]
-    Departure {
-        /// Time of the row at the end of the segment.
-        time_s: f64,
-        /// The departure's bound.
-        departure: f64,
-        /// The largest one promised.
-        promised: f64,
-    },
-    /// A time is not after the one before by the duration of the segment.
-    #[error("at {} s: the row does not follow the one before", SixDigits(*.time_s))]
-    Time {
-        /// Time of the row.
-        time_s: f64,
-    },
-    /// Paths are not in their order, a parameter does not rise, or there is no such path.
-    #[error("leg {leg}, at {}: the row does not follow the one before", SixDigits(*.s))]
-    Order {
-        /// The leg of the row.
-        leg: usize,
-        /// Its parameter.
-        s: f64,
-    },
-    /// A motion between two rests is slower than it is promised to be.
-    #[error("up to {} s: all limits allow {} times the speed", SixDigits(*.time_s), SixDigits(*.times))]
-    Slow {
-        /// Time of the rest.
-        time_s: f64,
-        /// How many times as fast it might be.
-        times: f64,
-    },
-    /// The machine may not be there.
-    #[error("leg {leg}, up to {}: {reason}", SixDigits(*.s))]
-    Path {
-        /// The leg.
-        leg: usize,
-        /// The parameter of the row.
-        s: f64,
-        /// What the path said.
-        reason: E,
-    },
 }
 
 /// Rounding of rows that are computed again from their numbers, relative to the limits, and of
@@ -155,54 +64,14 @@ const ROUNDING: f64 = 1e-9;
 pub struct Verifier<A: Axes> {
     promise: Promise<A>,
     before: Option<Row<A>>,
-    /// Accelerations at the end of the segment before and in its middle, and its duration; zero at
-    /// rest and at a jump.
+    /// Accelerations at the end of the segment before and in its middle, those that the path's bend
+    /// asks for at its end, and its duration; zero behind a rest and a jump.
     accelerations: A,
     middles: A,
+    bends: A,
     duration_s: f64,
     /// The largest part of a limit since the last rest, as a factor of all speeds.
     use_of_limits: f64,
-}
-
-/// The cubic of an axis by itself: in units of its duration q = q₀ + v₀ τ + b τ² + c τ³.
-struct Motion {
-    v0: f64,
-    b: f64,
-    c: f64,
-    duration_s: f64,
-}
-
-impl Motion {
-    fn new([q0, q1]: [f64; 2], [v0, v1]: [f64; 2], duration_s: f64) -> Self {
-        let (rise, v0, v1) = (q1 - q0, v0 * duration_s, v1 * duration_s);
-        Self {
-            v0,
-            b: 3.0 * rise - 2.0 * v0 - v1,
-            c: v0 + v1 - 2.0 * rise,
-            duration_s,
-        }
-    }
-
-    /// The largest speed, at an end or where 2b + 6c τ = 0.
-    fn speed(&self) -> f64 {
-        let at = |tau: f64| (self.v0 + (2.0 * self.b + 3.0 * self.c * tau) * tau).abs();
-        let ends = at(0.0).max(at(1.0));
-        let vertex = -self.b / (3.0 * self.c);
-        let inside = if vertex > 0.0 && vertex < 1.0 {
-            at(vertex)
-        } else {
-            0.0
-        };
-        ends.max(inside) / self.duration_s
-    }
-
-    fn accelerations(&self) -> [f64; 2] {
-        let square = self.duration_s * self.duration_s;
-        [
-            2.0 * self.b / square,
-            (2.0 * self.b + 6.0 * self.c) / square,
-        ]
-    }
 }
 
 impl<A: Axes> Verifier<A> {
@@ -214,6 +83,7 @@ impl<A: Axes> Verifier<A> {
             before: None,
             accelerations: A::zeros(),
             middles: A::zeros(),
+            bends: A::zeros(),
             duration_s: 0.0,
             use_of_limits: 0.0,
         }
@@ -245,9 +115,9 @@ impl<A: Axes> Verifier<A> {
             s: [start, row.s],
             rows: [from, *row],
         };
-        let speeds = self.check_parameter(&path, &span)?;
-        self.check_tool(&path, &span, speeds)?;
-        self.check_limits(&from, row)?;
+        let places = self.check_parameter(&path, &span)?;
+        self.check_tool(&path, &span, &places)?;
+        self.check_limits(&from, row, &places)?;
         path.check(&span)
             .map_err(|reason| Violation::Path { leg, s, reason })?;
         let (promised, departure) = (self.promise.max_departure, departure(&path, &span));
@@ -272,7 +142,7 @@ impl<A: Axes> Verifier<A> {
         if !is_start {
             return Err(Violation::Time { time_s: row.time_s });
         }
-        speed_on_path(path, row.s, row).map(|_| ())
+        Place::of_row(path, row.s, row).map(|_| ())
     }
 
     fn check_order<E>(&self, from: &Row<A>, row: &Row<A>) -> Result<(), Violation<E>> {
@@ -305,7 +175,7 @@ impl<A: Axes> Verifier<A> {
         row: &Row<A>,
         path: &P,
     ) -> Result<(), Violation<P::Error>> {
-        speed_on_path(path, row.s, row)?;
+        Place::of_row(path, row.s, row)?;
         self.check_eased(row.time_s)?;
         let velocities = from.velocity.as_slice().iter().zip(row.velocity.as_slice());
         let jumps = velocities.zip(self.promise.start_stop.as_slice());
@@ -321,11 +191,11 @@ impl<A: Axes> Verifier<A> {
         &self,
         path: &P,
         span: &Span<A>,
-    ) -> Result<[f64; 2], Violation<P::Error>> {
+    ) -> Result<[Place<A>; 2], Violation<P::Error>> {
         let ([from, to], [s0, s1]) = (&span.rows, span.s);
-        let speeds = [speed_on_path(path, s0, from)?, speed_on_path(path, s1, to)?];
-        for speed in speeds {
-            let times = speed * to.duration_s / (s1 - s0);
+        let places = [Place::of_row(path, s0, from)?, Place::of_row(path, s1, to)?];
+        for place in &places {
+            let times = place.speed * to.duration_s / (s1 - s0);
             // Written so that NaN turns back.
             let goes_on = (-ROUNDING..=3.0 + ROUNDING).contains(&times);
             if !goes_on {
@@ -333,7 +203,7 @@ impl<A: Axes> Verifier<A> {
                 return Err(Violation::TurnsBack { time_s, times });
             }
         }
-        Ok(speeds)
+        Ok(places)
     }
 
     /// The feed, which is a speed of the parameter, at both ends, and the tool's mean acceleration.
@@ -341,8 +211,9 @@ impl<A: Axes> Verifier<A> {
         &self,
         path: &P,
         span: &Span<A>,
-        [w0, w1]: [f64; 2],
+        [start, end]: &[Place<A>; 2],
     ) -> Result<(), Violation<P::Error>> {
+        let (w0, w1) = (start.speed, end.speed);
         let (Some(times), Some(tool)) = (self.promise.tool_feed, path.tool()) else {
             return Ok(());
         };
@@ -373,17 +244,19 @@ impl<A: Axes> Verifier<A> {
         Ok(())
     }
 
-    fn check_limits<E>(&mut self, from: &Row<A>, row: &Row<A>) -> Result<(), Violation<E>> {
-        let positions = from.position.as_slice().iter().zip(row.position.as_slice());
-        let velocities = from.velocity.as_slice().iter().zip(row.velocity.as_slice());
-        let limits = A::each(&self.promise.limits).iter().enumerate();
-        let all = limits.zip(positions.zip(velocities));
-        let middles = self.middles.as_mut_slice().iter_mut();
-        let ends = (self.accelerations.as_mut_slice().iter_mut()).zip(middles);
+    fn check_limits<E>(
+        &mut self,
+        from: &Row<A>,
+        row: &Row<A>,
+        places: &[Place<A>; 2],
+    ) -> Result<(), Violation<E>> {
         let (time_s, duration_s) = (row.time_s, row.duration_s);
         let middles_s = (self.duration_s + duration_s) * 0.5;
-        for (((axis, limits), ((q0, q1), (v0, v1))), (before, middle_before)) in all.zip(ends) {
-            let motion = Motion::new([*q0, *q1], [*v0, *v1], duration_s);
+        let begins = self.duration_s == 0.0;
+        for (axis, limits) in A::each(&self.promise.limits).iter().enumerate() {
+            let positions = [&from.position, &row.position].map(|row| of_axis(row, axis));
+            let velocities = [&from.velocity, &row.velocity].map(|row| of_axis(row, axis));
+            let motion = Motion::new(positions, velocities, duration_s);
             let (speed, [a0, a1]) = (motion.speed(), motion.accelerations());
             let (acceleration, middle) = (a0.abs().max(a1.abs()), (a0 + a1) * 0.5);
             within((axis, "speed", limits.speed), speed, time_s)?;
@@ -393,35 +266,49 @@ impl<A: Axes> Verifier<A> {
                 time_s,
             )?;
             let mut used = (speed / limits.speed).max(sqrt(acceleration / limits.acceleration));
+            let [start_bend, end_bend] = bends(axis, [from, row], places);
             if let Some(limit) = limits.jerk {
+                let before = [&self.accelerations, &self.middles];
+                let [end_before, middle_before] = if begins {
+                    [start_bend; 2]
+                } else {
+                    before.map(|values| of_axis(values, axis))
+                };
                 let inside = (a1 - a0).abs() / duration_s;
-                let step = (a0 - *before).abs() / middles_s;
-                let between = (middle - *middle_before).abs() / middles_s;
+                let step = (a0 - end_before).abs() / middles_s;
+                let between = (middle - middle_before).abs() / middles_s;
                 let jerk = inside.max(step).max(between);
                 within((axis, "jerk", limit), jerk, time_s)?;
                 used = used.max(cube_root(jerk / limit));
             }
             self.use_of_limits = self.use_of_limits.max(used);
-            (*before, *middle_before) = (a1, middle);
+            let kept = [&mut self.accelerations, &mut self.middles, &mut self.bends];
+            for (kept, value) in kept.into_iter().zip([a1, middle, end_bend]) {
+                if let Some(slot) = kept.as_mut_slice().get_mut(axis) {
+                    *slot = value;
+                }
+            }
         }
         self.duration_s = duration_s;
         Ok(())
     }
 
-    /// Where the machine rests, or its velocities jump, the acceleration goes to zero.
+    /// Where the machine rests the acceleration goes to zero, and where its velocities jump to what
+    /// the path's bend asks for.
     fn check_eased<E>(&mut self, time_s: f64) -> Result<(), Violation<E>> {
-        let limits = A::each(&self.promise.limits).iter().enumerate();
-        let half_s = self.duration_s * 0.5;
-        let ends = self.accelerations.as_slice().iter();
-        let ends = ends.zip(self.middles.as_slice());
-        for ((axis, limits), (end, middle)) in limits.zip(ends) {
+        let half_s = core::mem::take(&mut self.duration_s) * 0.5;
+        if half_s == 0.0 {
+            return Ok(()); // one behind the other
+        }
+        for (axis, limits) in A::each(&self.promise.limits).iter().enumerate() {
             if let Some(limit) = limits.jerk {
-                let most = end.abs().max(middle.abs());
+                let bend = of_axis(&self.bends, axis);
+                let values = [&self.accelerations, &self.middles];
+                let values = values.map(|values| (of_axis(values, axis) - bend).abs());
+                let most = values[0].max(values[1]);
                 within((axis, "jerk", limit), most / half_s, time_s)?;
             }
         }
-        (self.accelerations, self.middles) = (A::zeros(), A::zeros());
-        self.duration_s = 0.0;
         Ok(())
     }
 
@@ -460,50 +347,6 @@ fn within<E>(
         value,
         limit,
     })
-}
-
-/// The speed of the parameter with which a row passes a place of the path.
-fn speed_on_path<P: Path>(
-    path: &P,
-    s: f64,
-    row: &Row<P::Axes>,
-) -> Result<f64, Violation<P::Error>> {
-    let (leg, time_s) = (row.leg, row.time_s);
-    let point = path
-        .point(s)
-        .map_err(|reason| Violation::Path { leg, s, reason })?;
-    let off = |axis, name, by| Violation::OffPath {
-        axis,
-        name,
-        time_s,
-        by,
-    };
-    let positions = row
-        .position
-        .as_slice()
-        .iter()
-        .zip(point.position.as_slice());
-    for (axis, (is, wanted)) in positions.enumerate() {
-        // Written so that NaN is off.
-        let is_there = (is - wanted).abs() <= ROUNDING * (1.0 + wanted.abs());
-        if !is_there {
-            return Err(off(axis, "position", is - wanted));
-        }
-    }
-    let velocities = || row.velocity.as_slice().iter().zip(point.slope.as_slice());
-    let steepest = velocities().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-    let Some((velocity, slope)) = steepest.filter(|(_, slope)| **slope != 0.0) else {
-        return Ok(0.0);
-    };
-    let speed = velocity / slope;
-    for (axis, (is, slope)) in velocities().enumerate() {
-        let by = is - slope * speed;
-        // A smooth corner has the slope of the path after it: nine digits.
-        if by.abs() > SMOOTH * velocity.abs() {
-            return Err(off(axis, "velocity", by));
-        }
-    }
-    Ok(speed)
 }
 
 /// Difference of velocities at a smooth corner, relative to the fastest axis.

@@ -67,6 +67,19 @@ impl Acceleration {
         }
     }
 
+    /// Beside what passing an end of the segment at its speed asks for, by what the path bends there.
+    ///
+    /// ```text
+    /// a - c w²
+    /// ```
+    fn beside(mut self, bend: f64, end: usize, speeds: [f64; 2]) -> Self {
+        if let (Some(by), Some(speed)) = (self.by.get_mut(end), speeds.get(end)) {
+            self.value -= bend * speed * speed;
+            *by -= 2.0 * bend * speed;
+        }
+        self
+    }
+
     const fn utilisation(&self) -> Utilisation<2> {
         Utilisation {
             value: self.value,
@@ -92,7 +105,7 @@ pub(crate) struct Moving<'a, A: Axes> {
     pub(super) speeds: [f64; 2],
     /// Highest speeds at both ends.
     caps: [f64; 2],
-    /// Whether accelerations begin, and end, at zero.
+    /// Whether accelerations begin, and end, beside a rest or a jump.
     eased: [bool; 2],
     before: Option<Before<A>>,
     /// The knots of the three speeds, the first where there is a segment before.
@@ -216,7 +229,8 @@ impl<A: Axes> Moving<'_, A> {
             // The jerk as a part of its limit is this times that of the acceleration by the time.
             let time_s = limits.jerk / limits.acceleration;
             if time_s > 0.0 {
-                self.visit_jerk(&ends, [time_s, noise], barrier);
+                let bends = load.accelerations.map(|[bend, _]| bend);
+                self.visit_jerk(&ends, bends, [time_s, noise], barrier);
                 if let Some((before, rate)) = &between
                     && let Some(earlier) = A::each(&before.accelerations).get(axis)
                 {
@@ -252,40 +266,43 @@ impl<A: Axes> Moving<'_, A> {
         }
     }
 
-    /// The jerk inside, and where accelerations begin or end at zero.
+    /// The jerk inside, and where accelerations begin or end: at a rest from or to zero, at a jump
+    /// from or to what the path's bend asks for there, b = c w².
     ///
     /// ```text
-    /// inside (a₁ - a₀) / T     from or to zero a / (T / 2)     T = 2Δs / (w₀ + w₁)
+    /// inside (a₁ - a₀) / T     at the end (a - b) / (T / 2)     T = 2Δs / (w₀ + w₁)
     /// ```
     fn visit_jerk(
         &self,
         [start, end]: &[Acceleration; 2],
+        bends: [f64; 2],
         [time_s, noise]: [f64; 2],
         barrier: &mut impl Barrier,
     ) {
         let [w0, w1] = self.speeds;
         let sum = w0 + w1;
-        let mut over_time = |value: f64, [by0, by1]: [f64; 2], rate: f64| {
+        let mut over_time = |step: Acceleration, rate: f64| {
             let rate = with_noise(rate, 2.0 * noise * rate * sum);
             barrier.limit(&Utilisation {
-                value: value * sum * rate,
-                by: [(by0 * sum + value) * rate, (by1 * sum + value) * rate],
+                value: step.value * sum * rate,
+                by: step.by.map(|by| (by * sum + step.value) * rate),
                 degree: Degree::Jerk,
             });
         };
         let rate = time_s * 0.5 / self.ds;
-        let by = [end.by[0] - start.by[0], end.by[1] - start.by[1]];
-        over_time(end.value - start.value, by, rate);
-        let [eased_start, eased_end] = self.eased;
-        if eased_start {
-            over_time(start.value, start.by, rate * 2.0);
-        }
-        if eased_end {
-            over_time(end.value, end.by, rate * 2.0);
-        }
-        if eased_start || eased_end {
-            let middle = Acceleration::middle(start, end);
-            over_time(middle.value, middle.by, rate * 2.0);
+        let inside = Acceleration {
+            value: end.value - start.value,
+            by: [end.by[0] - start.by[0], end.by[1] - start.by[1]],
+        };
+        over_time(inside, rate);
+        let middle = Acceleration::middle(start, end);
+        let places = [*start, *end].into_iter().zip(self.eased).zip(bends);
+        for (end, ((place, is_eased), bend)) in places.enumerate() {
+            if is_eased {
+                for acceleration in [place, middle] {
+                    over_time(acceleration.beside(bend, end, self.speeds), rate * 2.0);
+                }
+            }
         }
     }
 }

@@ -3,7 +3,9 @@
 use core::convert::Infallible;
 use core::fmt::Debug;
 
-use path_timing::{AxisLimits, Corner, Curve, Knot, Path, PlanError, Row, Table, ToolLimits};
+use path_timing::{
+    AxisLimits, Corner, Curve, Knot, LookAhead, Path, PlanError, Row, Table, ToolLimits,
+};
 use proptest::prelude::*;
 
 use crate::support::jerk::{bits, check_jerk, feeds, run_under};
@@ -63,8 +65,8 @@ fn a_smooth_joint_costs_nothing() {
     assert!((0.97..1.03).contains(&ratio), "{ratio}");
 }
 
-/// Where directions differ a smooth corner is a stop; velocities jump between two rows with no
-/// acceleration on either side.
+/// Where directions differ a smooth corner is a stop; velocities jump between two rows, with the
+/// acceleration of constant speed on either side.
 #[test]
 fn sharp_corners_are_stops_or_jumps() {
     let points = [[-100.0, 80.0], [0.0, 80.0], [50.0, 140.0]];
@@ -78,6 +80,38 @@ fn sharp_corners_are_stops_or_jumps() {
     assert_eq!(rows.len(), 62);
     assert!(!rows[30].is_at_rest() && rows[31].duration_s == 0.0);
     assert!(time_s(&rows) < time_s(&stops));
+}
+
+/// An arm bends its axes along a line: they have the acceleration of its bend right at the jump, so
+/// that it is as fast on short segments as on long ones, in tables and streams.
+#[test]
+fn jumps_of_an_arm_are_as_fast_on_short_segments() {
+    let points = [[-100.0, 80.0], [0.0, 80.0], [100.0, 110.0]];
+    let legs = lines(&points, Corner::Jump([0.1, 20.0]), None);
+    let planned = |segments| planned(&legs, ARM, segments);
+    let streamed = |segments| {
+        let mut window = [Knot::default(); 400];
+        let rows = LookAhead::new(&legs, ARM, |_| Ok(segments), &mut window).unwrap();
+        rows.map(Result::unwrap).collect::<Vec<_>>()
+    };
+    let plans: [&dyn Fn(u32) -> Vec<Row<[f64; 2]>>; 2] = [&planned, &streamed];
+    for rows in plans {
+        let speed = |segments| {
+            let rows = rows(segments);
+            let jump = rows.windows(2).find(|pair| pair[1].duration_s == 0.0);
+            (time_s(&rows), jump.unwrap()[0].velocity[0].abs())
+        };
+        let (long_s, long_speed) = speed(40);
+        for segments in [80, 160] {
+            let (short_s, short_speed) = speed(segments);
+            assert!(short_s < 1.01 * long_s, "{segments}: {}", short_s / long_s);
+            assert!(
+                short_speed > 0.97 * long_speed,
+                "{segments}: {}",
+                short_speed / long_speed
+            );
+        }
+    }
 }
 
 /// Roundings that are passed at speed: what a limit of jerk costs.

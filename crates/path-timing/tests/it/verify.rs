@@ -68,26 +68,49 @@ fn what_is_planned_is_proven() {
         };
         verify(promise, &rows).unwrap();
     }
+}
+
+/// Of jumps as of all else: also where the segments beside them are short, where the machine rests
+/// at one, and with a limit of jerk that is lower by a twentieth.
+#[test]
+fn jumps_are_proven() {
     let points = [[-100.0, 80.0], [0.0, 80.0], [100.0, 110.0]];
-    for jerk in [None, Some(400.0)] {
-        let limits = [
-            limits(2.0, 20.0, jerk),
-            limits(300.0, 2000.0, jerk.map(|j| j * 100.0)),
-        ];
-        let start_stop = [0.05, 10.0];
-        let paths = lines(&points, Corner::Jump(start_stop), None);
-        let mut knots = [Knot::default(); 300];
-        let table = Table::plan(&paths, limits, |_| 100, &mut knots).unwrap();
-        let promise = Promise {
+    let start_stop = [0.05, 10.0];
+    let paths = lines(&points, Corner::Jump(start_stop), None);
+    let verify = |limits: [AxisLimits; 2], rows: &[Row<[f64; 2]>]| {
+        let mut verifier = Verifier::new(Promise {
             start_stop,
-            max_slowness: 3.0,
             ..promise(limits)
+        });
+        rows.iter()
+            .try_for_each(|row| verifier.add(row, |leg| paths.get(leg), |_, _| 0.0))
+    };
+    for (jerk, segments) in [(None, 100), (Some(400.0), 100), (Some(400.0), 400)] {
+        let axes = |jerk: Option<f64>| {
+            [
+                limits(2.0, 20.0, jerk),
+                limits(300.0, 2000.0, jerk.map(|j| j * 100.0)),
+            ]
         };
-        let mut verifier = Verifier::new(promise);
-        for row in table.rows() {
-            verifier
-                .add(&row, |leg| paths.get(leg), |_, _| 0.0)
-                .unwrap();
+        let mut knots = vec![Knot::default(); 1000];
+        let table = Table::plan(&paths, axes(jerk), |_| segments, &mut knots).unwrap();
+        let rows: Vec<_> = table.rows().collect();
+        verify(axes(jerk), &rows).unwrap();
+        if jerk.is_some() {
+            let error = verify(axes(jerk.map(|jerk| 0.95 * jerk)), &rows).unwrap_err();
+            assert!(matches!(error, Violation::Limit { name: "jerk", .. }));
+        }
+        let at = rows.iter().position(|row| row.leg == 1).unwrap();
+        for moving in at - 60..at + 3 {
+            let mut ceilings = vec![FeedCeiling::default(); table.len()];
+            let mut playback = table.playback(1.0, &mut ceilings).unwrap();
+            let mut held: Vec<_> = playback.by_ref().take(moving).collect();
+            playback.stop();
+            held.extend(playback.by_ref());
+            assert!(playback.is_at_rest() && !playback.is_finished());
+            playback.set_feed(1.0).unwrap();
+            held.extend(playback);
+            verify(axes(jerk), &held).unwrap();
         }
     }
 }
