@@ -236,15 +236,12 @@ fn within<A: Axes>(pair: &[Knot<A>], fraction: f64) -> (f64, f64) {
 }
 
 /// Where a knot stands on a leg, as a fraction: dense at an end where the machine is slow, for there
-/// the speed changes most from knot to knot, and with it the cubic's departure from the path.
-pub(crate) fn fraction(u: f64, is_slow: [bool; 2]) -> f64 {
-    let from_rest = |u: f64| u * u * (3.0 - u) * 0.5;
-    match is_slow {
-        [true, true] => u * u * (3.0 - 2.0 * u),
-        [true, false] => from_rest(u),
-        [false, true] => 1.0 - from_rest(1.0 - u),
-        [false, false] => u,
-    }
+/// the speed changes most from knot to knot, and with it the cubic's departure from the path. How
+/// evenly they stand at both ends is from 0, where it stops, to 1.
+pub(crate) fn fraction(u: f64, [start, end]: [f64; 2]) -> f64 {
+    let rest = 1.0 - u;
+    let slopes = [start * (1.5 - 0.5 * end), end * (1.5 - 0.5 * start)];
+    u * u * (3.0 - 2.0 * u) + u * rest * (slopes[0] * rest - slopes[1] * u)
 }
 
 /// Leaves every second knot of each leg and all at which legs meet.

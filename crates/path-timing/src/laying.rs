@@ -194,6 +194,10 @@ impl<P: Path> Cutting<P> {
             return length;
         }
         let u = f64::from(index) / f64::from(self.segments);
-        length * fraction(u, self.is_slow)
+        length
+            * fraction(
+                u,
+                self.is_slow.map(|is_slow| if is_slow { 0.0 } else { 1.0 }),
+            )
     }
 }

@@ -1,6 +1,7 @@
 //! A leg: one path among several, checked before it is planned.
 
-use crate::number::{LARGEST, SMALLEST, range};
+use crate::number::{LARGEST, Real, SMALLEST, range};
+use crate::reciprocals::Reciprocals;
 use crate::{Axes, Corner, Path, PathPoint, PlanError, ToolLimits};
 
 /// A path, and which of all it is.
@@ -71,6 +72,30 @@ impl<P: Path> Leg<P> {
             }),
             None => Ok(()),
         }
+    }
+
+    /// What a speed, an acceleration and a jerk of 1 of the parameter use of the limits, where the
+    /// axes go as at a point.
+    pub(crate) fn uses<R: Real>(
+        &self,
+        limits: &Reciprocals<P::Axes, R>,
+        point: &PathPoint<P::Axes>,
+    ) -> [f64; 3] {
+        let axes = limits.axes().iter().zip(point.slope.as_slice());
+        let of_axes = axes.map(|(limit, slope)| {
+            [limit.speed, limit.acceleration, limit.jerk].map(|limit| limit.into() * slope.abs())
+        });
+        let of_tool = self.tool.map(|tool| {
+            [
+                1.0 / tool.feed,
+                tool.acceleration.map_or(0.0, |a| 1.0 / a),
+                0.0,
+            ]
+        });
+        of_axes.chain(of_tool).fold([0.0; 3], |most, uses| {
+            let [v, a, j] = most;
+            [v.max(uses[0]), a.max(uses[1]), j.max(uses[2])]
+        })
     }
 
     /// Positions and slopes at the parameter `s`, refused by name where the machine cannot be

@@ -5,7 +5,7 @@ use crate::knots::{
 };
 use crate::laying::{Laying, MAX_SEGMENTS, bounded, knots_of};
 use crate::leg::Leg;
-use crate::number::Real;
+use crate::number::{Real, cube_root, sqrt};
 use crate::passes;
 use crate::reciprocals::Reciprocals;
 use crate::stretch::stretch;
@@ -206,15 +206,30 @@ impl<P: Path> Place<'_, P> {
         let segments = u32::try_from(own.len().saturating_sub(1)).unwrap_or(MAX_SEGMENTS);
         let few = (segments / 2).max(segments.min(FEW));
         let (rough, _) = own.split_at_mut(knots_of(few).min(own.len()));
-        // Where velocities jump the machine may be nearly as slow as where it stops.
-        let is_slow = self.caps.map(f64::is_finite);
+        let evenness = self.evenness(limits);
         for (index, knot) in (0..=few).zip(&mut *rough) {
             let u = f64::from(index) / f64::from(few);
-            knot.moved_s = length * fraction(u, is_slow);
+            knot.moved_s = length * fraction(u, evenness);
         }
         self.lay_unchecked(rough, |_, _, _| 1.0)?;
         self.alone(limits, rough);
         Ok(rough.len())
+    }
+
+    /// How evenly knots stand at both ends: from 0, where the machine stops, to 1, where it is as
+    /// fast as it gets. As dense as at a stop, those at a jump would be so near to each other that
+    /// rounding takes the limits for itself.
+    ///
+    /// ```text
+    /// the fastest from rest to rest: 1/v', √(L/a'), 2 ∛(L²/32j')
+    /// ```
+    fn evenness<R: Real>(&self, limits: &Reciprocals<P::Axes, R>) -> [f64; 2] {
+        let [speed, acceleration, jerk] = self.leg.uses(limits, &self.start);
+        let length = self.leg.length();
+        let fastest = (1.0 / speed)
+            .min(sqrt(length / acceleration))
+            .min(2.0 * cube_root(length * length / (32.0 * jerk)));
+        self.caps.map(|cap| (cap / fastest).min(1.0))
     }
 
     /// Lays knots where they are to stand, for a plan that nothing runs by.

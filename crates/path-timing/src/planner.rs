@@ -23,17 +23,7 @@ pub(crate) fn fewest<A: Axes, E>(
     start: &PathPoint<A>,
     ends: [&Beyond<A>; 2],
 ) -> u32 {
-    let slopes = limits.axes().iter().zip(start.slope.as_slice());
-    let of_axes =
-        slopes.map(|(limit, slope)| [limit.speed, limit.acceleration].map(|l| l * slope.abs()));
-    let of_tool = leg
-        .tool()
-        .map(|tool| [1.0 / tool.feed, tool.acceleration.map_or(0.0, |a| 1.0 / a)]);
-    let [slowness, inertia] = of_axes
-        .chain(of_tool)
-        .fold([0.0_f64; 2], |[speed, acceleration], [v, a]| {
-            [speed.max(v), acceleration.max(a)]
-        });
+    let [slowness, inertia, _] = leg.uses(limits, start);
     let speeds = ends.map(|(junction, length)| match junction {
         Junction::Smooth(_) => sqrt(length / (inertia + inertia)),
         Junction::Stop | Junction::Jump(_) => junction.cap(),

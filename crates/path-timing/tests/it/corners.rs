@@ -162,6 +162,32 @@ const MORE_SEGMENTS: f64 = 1.0001;
 /// Knots, more than any of the polylines takes.
 const MOST: usize = 1024;
 
+/// Knots are not as dense at a jump as at a stop: there short legs would have segments so short that
+/// rounding takes the limits for itself.
+#[test]
+fn jumps_between_short_legs_are_as_fast_on_many_segments() {
+    let points: Vec<_> = (0..7)
+        .map(|n| [50.0 + 0.1 * f64::from(n), 140.0 + 0.08 * f64::from(n % 2)])
+        .collect();
+    let legs = lines(&points, Corner::Jump([1.0, 400.0]), None);
+    for jerk in [None, Some([400.0, 40_000.0])] {
+        let limits = [0, 1].map(|axis: usize| AxisLimits {
+            jerk: jerk.map(|jerk| jerk[axis]),
+            ..LIMITS[axis]
+        });
+        let time_s = |segments| {
+            let mut knots = vec![Knot::default(); 12_000];
+            let table = Table::plan(&legs, limits, |_| segments, &mut knots).unwrap();
+            table.duration_s()
+        };
+        let few_s = time_s(100);
+        for segments in [200, 400, 800, 1600] {
+            let ratio = time_s(segments) / few_s;
+            assert!(ratio < 1.01, "{jerk:?}, {segments}: {ratio}");
+        }
+    }
+}
+
 /// With 16 segments and more on each leg, which stand elsewhere, a jump next to rest takes up to
 /// 0.16 % longer than the stop.
 const ELSEWHERE: f64 = 1.003;
