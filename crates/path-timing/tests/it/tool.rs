@@ -9,6 +9,7 @@ use path_timing::{
     Smoothed, Table, ToolLimits, Verifier, Vertex, Violation, Waypoint,
 };
 use proptest::prelude::*;
+use test_support::{Random, setting};
 
 use crate::support::vectors::norm;
 
@@ -246,6 +247,35 @@ fn the_tool_keeps_its_acceleration_on_any_number_of_segments() {
                 ratio < 1.001,
                 "stream, {acceleration} mm/s², {segments}: {ratio} times"
             );
+        }
+    }
+}
+
+/// Along short lines that turn by any angle, held at each row in turn: nothing is passed on the way
+/// to rest. `LINES` of them, from `SEED` on.
+#[test]
+fn holds_at_any_row_of_short_lines_are_proven() {
+    let mut random = Random::new(setting("SEED", 1));
+    for line in 0..setting("LINES", 40) {
+        let turns: Vec<f64> = (0..20)
+            .map(|turn: usize| [0.0, 0.3, 1.6, 3.1][turn % 4] * random.within(-1.0, 1.0))
+            .collect();
+        let tool = ToolLimits {
+            feed: random.size(0.3, 2.8),
+            acceleration: (line % 2 == 0).then(|| random.size(1.3, 4.0)),
+        };
+        let tolerance = random.size(-3.0, -1.0);
+        let curves = curves(&turns, random.size(-1.0, 1.0), tool, tolerance);
+        for moving in 0..60 {
+            let mut window = [Knot::default(); 24];
+            let mut motion = LookAhead::new(&curves, [AXIS; 2], |_| Ok(2), &mut window).unwrap();
+            let mut rows: Vec<_> = motion.by_ref().take(moving).map(Result::unwrap).collect();
+            motion.stop();
+            rows.extend(motion.by_ref().map(Result::unwrap));
+            motion.set_feed(1.0).unwrap();
+            rows.extend(motion.map(Result::unwrap));
+            let proven = verify(&curves, tool, 1.0, &rows);
+            assert!(proven.is_ok(), "line {line}, row {moving}: {proven:?}");
         }
     }
 }
