@@ -7,8 +7,10 @@
 //! n = max over axes of 48 |way| a / v^2 and 36 |turn of q'/v| / max |q'/v|
 //! ```
 //!
-//! from 2 to 64. Where it begins or ends next to rest, at a stop or beside a sharp turn of another
-//! path, its speed rises or falls on it, however short it is: from 8 on, where both from 12 on.
+//! from 2 to 64; on the way no more than a tool asks for that brakes by its own acceleration, from
+//! the path's highest speed. Where it begins or ends next to rest, at a stop or beside a sharp turn
+//! of another path, its speed rises or falls on it, however short it is: from 8 on, where both from
+//! 12 on.
 
 use path_timing::{AxisLimits, Corner, Path, PathPoint, Span, ToolLimits};
 
@@ -152,7 +154,8 @@ impl<const N: usize> Shape<N> {
         let of_ways = axes
             .iter()
             .map(AxisAlong::segments_of_way)
-            .fold(0.0, f64::max);
+            .fold(0.0, f64::max)
+            .min(segments_of_tool(path, steepest));
         Self {
             slopes: [start.slope, end.slope],
             is_smooth,
@@ -207,6 +210,16 @@ fn places<P: Path>(path: &P) -> Option<[PathPoint<P::Axes>; PLACES]> {
         *place = path.point(path.length() * u).ok()?;
     }
     Some(places)
+}
+
+/// As many as the way asks for at the tool's acceleration, if there is such a limit.
+fn segments_of_tool<P: Path>(path: &P, steepest: f64) -> f64 {
+    let tool = path.tool();
+    let limits = tool.and_then(|tool| Some((tool.feed, tool.acceleration?)));
+    limits.map_or(f64::INFINITY, |(feed, acceleration)| {
+        let speed = feed.min(1.0 / steepest);
+        SEGMENTS_OF_TWO_BRAKINGS * path.length() * acceleration / (speed * speed)
+    })
 }
 
 /// An axis along a path: its way, and its speeds relative to its limit at unit speed of the path.

@@ -250,6 +250,28 @@ fn dense_points_are_as_fast_as_the_arc() {
     }
 }
 
+/// A tool that may not speed up as its axes can brakes on a longer way, of which the window has to
+/// see all: short lines one behind the other take the time of the whole, v/a + L/v.
+#[test]
+fn the_window_sees_the_way_that_a_tool_brakes_on() {
+    const TOOL: ToolLimits = ToolLimits {
+        feed: 60.0,
+        acceleration: Some(100.0),
+    };
+    let lines = (0..30).map(|n| {
+        let x = 4.0 * f64::from(n);
+        let line = Curve::line([x, 0.0], [x + 4.0, 0.0]).unwrap();
+        line.with_corner(Corner::Smooth).with_tool(TOOL)
+    });
+    let mut drive = drive();
+    let steps = drive.along(lines, TOLERANCE_MM, Curve::departure);
+    let last = steps.last().unwrap().unwrap();
+    let shortest_s = 60.0 / 100.0 + 120.0 / 60.0;
+    let ticks = f64::from(u32::try_from(last.ticks).unwrap());
+    let ratio = ticks * 1e-6 / shortest_s;
+    assert!((0.99..1.03).contains(&ratio), "{ratio}");
+}
+
 /// From rest the acceleration comes in time: two segments of each line would make it jump, and
 /// take a tenth less time than the limit of jerk allows.
 #[test]
