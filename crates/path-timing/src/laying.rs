@@ -125,7 +125,8 @@ const MOST_HALVINGS: u32 = 12;
 #[derive(Debug, Clone)]
 pub(crate) struct Cutting<P: Path> {
     pub(crate) laying: Laying<P>,
-    is_slow: [bool; 2],
+    /// How evenly knots stand at both ends: 0 where it is slow, else 1.
+    evenness: [f64; 2],
     /// Of the size of the next one.
     segments: u32,
     /// How often it has been halved.
@@ -136,10 +137,10 @@ pub(crate) struct Cutting<P: Path> {
 
 impl<P: Path> Cutting<P> {
     /// A leg with a number of segments, dense at an end where it is slow.
-    pub(crate) const fn new(laying: Laying<P>, is_slow: [bool; 2], segments: u32) -> Self {
+    pub(crate) fn new(laying: Laying<P>, is_slow: [bool; 2], segments: u32) -> Self {
         Self {
             laying,
-            is_slow,
+            evenness: is_slow.map(|is_slow| if is_slow { 0.0 } else { 1.0 }),
             segments,
             halvings: 0,
             index: 0,
@@ -194,10 +195,6 @@ impl<P: Path> Cutting<P> {
             return length;
         }
         let u = f64::from(index) / f64::from(self.segments);
-        length
-            * fraction(
-                u,
-                self.is_slow.map(|is_slow| if is_slow { 0.0 } else { 1.0 }),
-            )
+        length * fraction(u, self.evenness)
     }
 }

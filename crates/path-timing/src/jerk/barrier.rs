@@ -297,10 +297,10 @@ impl<A: Axes> Moving<'_, A> {
         over_time(inside, rate);
         let middle = Acceleration::middle(start, end);
         let places = [*start, *end].into_iter().zip(self.eased).zip(bends);
-        for (end, ((place, is_eased), bend)) in places.enumerate() {
+        for (at, ((own, is_eased), bend)) in places.enumerate() {
             if is_eased {
-                for acceleration in [place, middle] {
-                    over_time(acceleration.beside(bend, end, self.speeds), rate * 2.0);
+                for acceleration in [own, middle] {
+                    over_time(acceleration.beside(bend, at, self.speeds), rate * 2.0);
                 }
             }
         }
