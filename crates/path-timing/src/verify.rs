@@ -6,11 +6,11 @@
 //! other way round.
 
 mod motion;
-mod place;
+mod passage;
 mod violation;
 
 use self::motion::{Motion, bends, of_axis};
-use self::place::Place;
+use self::passage::Passage;
 pub use self::violation::Violation;
 use crate::number::{cube_root, sqrt};
 use crate::{Axes, AxisLimits, Path, Row, Span};
@@ -115,9 +115,9 @@ impl<A: Axes> Verifier<A> {
             s: [start, row.s],
             rows: [from, *row],
         };
-        let places = self.check_parameter(&path, &span)?;
-        self.check_tool(&path, &span, &places)?;
-        self.check_limits(&from, row, &places)?;
+        let passages = self.check_parameter(&path, &span)?;
+        self.check_tool(&path, &span, &passages)?;
+        self.check_limits(&from, row, &passages)?;
         path.check(&span)
             .map_err(|reason| Violation::Path { leg, s, reason })?;
         let (promised, departure) = (self.promise.max_departure, departure(&path, &span));
@@ -142,7 +142,7 @@ impl<A: Axes> Verifier<A> {
         if !is_start {
             return Err(Violation::Time { time_s: row.time_s });
         }
-        Place::of_row(path, row.s, row).map(|_| ())
+        Passage::of_row(path, row.s, row).map(|_| ())
     }
 
     fn check_order<E>(&self, from: &Row<A>, row: &Row<A>) -> Result<(), Violation<E>> {
@@ -175,7 +175,7 @@ impl<A: Axes> Verifier<A> {
         row: &Row<A>,
         path: &P,
     ) -> Result<(), Violation<P::Error>> {
-        Place::of_row(path, row.s, row)?;
+        Passage::of_row(path, row.s, row)?;
         self.check_eased(row.time_s)?;
         let velocities = from.velocity.as_slice().iter().zip(row.velocity.as_slice());
         let jumps = velocities.zip(self.promise.start_stop.as_slice());
@@ -191,11 +191,14 @@ impl<A: Axes> Verifier<A> {
         &self,
         path: &P,
         span: &Span<A>,
-    ) -> Result<[Place<A>; 2], Violation<P::Error>> {
+    ) -> Result<[Passage<A>; 2], Violation<P::Error>> {
         let ([from, to], [s0, s1]) = (&span.rows, span.s);
-        let places = [Place::of_row(path, s0, from)?, Place::of_row(path, s1, to)?];
-        for place in &places {
-            let times = place.speed * to.duration_s / (s1 - s0);
+        let passages = [
+            Passage::of_row(path, s0, from)?,
+            Passage::of_row(path, s1, to)?,
+        ];
+        for passage in &passages {
+            let times = passage.speed * to.duration_s / (s1 - s0);
             // Written so that NaN turns back.
             let goes_on = (-ROUNDING..=3.0 + ROUNDING).contains(&times);
             if !goes_on {
@@ -203,7 +206,7 @@ impl<A: Axes> Verifier<A> {
                 return Err(Violation::TurnsBack { time_s, times });
             }
         }
-        Ok(places)
+        Ok(passages)
     }
 
     /// The feed, which is a speed of the parameter, at both ends, and the tool's mean acceleration.
@@ -211,7 +214,7 @@ impl<A: Axes> Verifier<A> {
         &self,
         path: &P,
         span: &Span<A>,
-        [start, end]: &[Place<A>; 2],
+        [start, end]: &[Passage<A>; 2],
     ) -> Result<(), Violation<P::Error>> {
         let (w0, w1) = (start.speed, end.speed);
         let (Some(times), Some(tool)) = (self.promise.tool_feed, path.tool()) else {
@@ -248,17 +251,16 @@ impl<A: Axes> Verifier<A> {
         &mut self,
         from: &Row<A>,
         row: &Row<A>,
-        places: &[Place<A>; 2],
+        passages: &[Passage<A>; 2],
     ) -> Result<(), Violation<E>> {
         let (time_s, duration_s) = (row.time_s, row.duration_s);
-        let middles_s = (self.duration_s + duration_s) * 0.5;
-        let begins = self.duration_s == 0.0;
-        for (axis, limits) in A::each(&self.promise.limits).iter().enumerate() {
+        let limits = self.promise.limits;
+        for (axis, limits) in A::each(&limits).iter().enumerate() {
             let positions = [&from.position, &row.position].map(|row| of_axis(row, axis));
             let velocities = [&from.velocity, &row.velocity].map(|row| of_axis(row, axis));
             let motion = Motion::new(positions, velocities, duration_s);
             let (speed, [a0, a1]) = (motion.speed(), motion.accelerations());
-            let (acceleration, middle) = (a0.abs().max(a1.abs()), (a0 + a1) * 0.5);
+            let acceleration = a0.abs().max(a1.abs());
             within((axis, "speed", limits.speed), speed, time_s)?;
             within(
                 (axis, "acceleration", limits.acceleration),
@@ -266,31 +268,37 @@ impl<A: Axes> Verifier<A> {
                 time_s,
             )?;
             let mut used = (speed / limits.speed).max(sqrt(acceleration / limits.acceleration));
-            let [start_bend, end_bend] = bends(axis, [from, row], places);
             if let Some(limit) = limits.jerk {
-                let before = [&self.accelerations, &self.middles];
-                let [end_before, middle_before] = if begins {
-                    [start_bend; 2]
-                } else {
-                    before.map(|values| of_axis(values, axis))
-                };
-                let inside = (a1 - a0).abs() / duration_s;
-                let step = (a0 - end_before).abs() / middles_s;
-                let between = (middle - middle_before).abs() / middles_s;
-                let jerk = inside.max(step).max(between);
+                let bends = bends(axis, [from, row], passages);
+                let jerk = self.jerk(axis, [a0, a1], bends, duration_s);
                 within((axis, "jerk", limit), jerk, time_s)?;
                 used = used.max(cube_root(jerk / limit));
             }
             self.use_of_limits = self.use_of_limits.max(used);
-            let kept = [&mut self.accelerations, &mut self.middles, &mut self.bends];
-            for (kept, value) in kept.into_iter().zip([a1, middle, end_bend]) {
-                if let Some(slot) = kept.as_mut_slice().get_mut(axis) {
-                    *slot = value;
-                }
-            }
         }
         self.duration_s = duration_s;
         Ok(())
+    }
+
+    /// The jerk of an axis on a segment with these accelerations and bends at its ends, and from the
+    /// one before to it, which it takes the place of.
+    fn jerk(&mut self, axis: usize, [a0, a1]: [f64; 2], bends: [f64; 2], duration_s: f64) -> f64 {
+        let [start_bend, end_bend] = bends;
+        let middle = (a0 + a1) * 0.5;
+        let begins = self.duration_s == 0.0;
+        let before = [&self.accelerations, &self.middles].map(|values| of_axis(values, axis));
+        let [end_before, middle_before] = if begins { [start_bend; 2] } else { before };
+        let kept = [&mut self.accelerations, &mut self.middles, &mut self.bends];
+        for (kept, value) in kept.into_iter().zip([a1, middle, end_bend]) {
+            if let Some(slot) = kept.as_mut_slice().get_mut(axis) {
+                *slot = value;
+            }
+        }
+        let middles_s = (self.duration_s + duration_s) * 0.5;
+        let inside = (a1 - a0).abs() / duration_s;
+        let step = (a0 - end_before).abs() / middles_s;
+        let between = (middle - middle_before).abs() / middles_s;
+        inside.max(step).max(between)
     }
 
     /// Where the machine rests the acceleration goes to zero, and where its velocities jump to what

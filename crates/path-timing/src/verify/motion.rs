@@ -1,6 +1,6 @@
 //! What one axis does between two rows.
 
-use super::place::Place;
+use super::passage::Passage;
 use crate::{Axes, Row};
 
 /// The cubic of an axis by itself: in units of its duration q = q₀ + v₀ τ + b τ² + c τ³.
@@ -49,7 +49,7 @@ impl Motion {
 pub(super) fn bends<A: Axes>(
     axis: usize,
     [from, to]: [&Row<A>; 2],
-    [start, end]: &[Place<A>; 2],
+    [start, end]: &[Passage<A>; 2],
 ) -> [f64; 2] {
     let of_axis = |values: &A| of_axis(values, axis);
     let positions = [of_axis(&from.position), of_axis(&to.position)];

@@ -1,19 +1,19 @@
-//! Where on its path a row is, and how fast it passes there.
+//! How a row passes its place on the path.
 
 use super::{ROUNDING, SMOOTH, Violation};
 use crate::{Axes, Path, Row};
 
-/// A place of a path that a row passes.
+/// A row on its path.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place<A> {
+pub(super) struct Passage<A> {
     /// The speed of the parameter.
     pub(super) speed: f64,
     /// The slopes of all axes.
     pub(super) slope: A,
 }
 
-impl<A: Axes> Place<A> {
-    /// The place, if the row has its positions and velocities.
+impl<A: Axes> Passage<A> {
+    /// If the row has the positions and velocities of the path at the place.
     pub(super) fn of_row<P: Path<Axes = A>>(
         path: &P,
         s: f64,
@@ -42,11 +42,11 @@ impl<A: Axes> Place<A> {
             }
         }
         let slope = point.slope;
-        let place = |speed| Self { speed, slope };
+        let passage = |speed| Self { speed, slope };
         let velocities = || row.velocity.as_slice().iter().zip(point.slope.as_slice());
         let steepest = velocities().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
         let Some((velocity, slope)) = steepest.filter(|(_, slope)| **slope != 0.0) else {
-            return Ok(place(0.0));
+            return Ok(passage(0.0));
         };
         let speed = velocity / slope;
         for (axis, (is, slope)) in velocities().enumerate() {
@@ -56,6 +56,6 @@ impl<A: Axes> Place<A> {
                 return Err(off(axis, "velocity", by));
             }
         }
-        Ok(place(speed))
+        Ok(passage(speed))
     }
 }
