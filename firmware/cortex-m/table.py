@@ -113,6 +113,10 @@ def sizes():
     return nothing, table(["", "M4F, 3", "M4F, s", "M0+, 3", "M0+, s"], rows)
 
 
+def millions(instructions):
+    return f"{instructions / 1e6:.1f}"
+
+
 def lines():
     played = read(COMMITTED / "m4-play")
     title = {"pc": "planned on a PC", "board": "planned on the M4F itself"}
@@ -123,7 +127,21 @@ def lines():
         )
     ]
     head = ["", "steps", "bytes", "latency, least", "median", "most", "jitter"]
-    return table(head, rows), f"{played['planning', 'board'][0] / 1e6:.1f}"
+    return table(head, rows), millions(played["planning", "board"][0])
+
+
+def line_tables():
+    """Path and table of the line, in `f32` and in `f64`."""
+    counted = read(COMMITTED / "m4-count")
+    path, in_f32, in_f64 = (
+        counted[name, "f64"][1]
+        for name in (
+            "Arm::path, 244 mm",
+            "Table::plan_in_f32, the line, 100 rows",
+            "Table::plan, the line, 100 rows",
+        )
+    )
+    return millions(path + in_f32), millions(in_f64)
 
 
 def boards():
@@ -139,12 +157,15 @@ def page():
     calls, kept = counts()
     nothing, flash = sizes()
     played, planning = lines()
+    in_f32, in_f64 = line_tables()
     text = (HERE / "metal.md.in").read_text()
     for mark, value in {
         "COUNTS": calls,
         "KEPT": kept,
         "LINES": played,
         "PLANNING": planning,
+        "PLANNING_F32": in_f32,
+        "PLANNING_F64": in_f64,
         "FLASH": flash,
         "NOTHING": number(nothing),
         "BOARDS": boards(),
