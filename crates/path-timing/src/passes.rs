@@ -112,3 +112,29 @@ pub(crate) fn rest_to_rest_s<A: Axes>(
                 .max(cube_root(12.0 * jerk))
         })
 }
+
+/// The time of the way between two knots, with their speeds, if the speed could change on it at
+/// will: as fast as the mean slopes of the axes, the path's bend and the tool allow.
+///
+/// ```text
+/// w² = a Δs + (w₀² + w₁²) / 2    T = (2w - w₀ - w₁) / a + what is left at the highest speed
+/// ```
+pub(crate) fn up_and_down_s<A: Axes>(limits: &Reciprocals<A>, [from, to]: [&Knot<A>; 2]) -> f64 {
+    let (ds, [w0, w1]) = (to.ds, [from.speed, to.speed]);
+    let positions = (from.point.position.as_slice().iter()).zip(to.point.position.as_slice());
+    let axes = limits.axes().iter().zip(positions);
+    let uses = axes.map(|(limits, (q0, q1))| {
+        let slope = (q1 - q0).abs() / ds;
+        [slope * limits.speed, slope * limits.acceleration]
+    });
+    let of_tool = [1.0 / to.tool.feed, 1.0 / to.tool.acceleration];
+    let [slowness, inertia] = (uses.chain([of_tool])).fold([0.0; 2], |[v, a]: [f64; 2], own| {
+        [v.max(own[0]), a.max(own[1])]
+    });
+    let even = evenly(limits, [from, to]).min(1.0 / slowness);
+    let highest = even.max(w0).max(w1);
+    let top = sqrt(ds / inertia + 0.5 * (w0 * w0 + w1 * w1)).min(highest);
+    let [up, down] = [w0, w1].map(|w| top - w);
+    let changing = 0.5 * inertia * (up * (top + w0) + down * (top + w1));
+    inertia * (up + down) + (ds - changing).max(0.0) / top
+}

@@ -175,8 +175,7 @@ pub(crate) fn check_single_segments<A: Axes, E>(
         leg = leg.saturating_add(usize::from(from.ends_leg));
         let segment_s = segment_s(from, to);
         time_s += segment_s;
-        let is_single = to.ends_leg && to.ds > 0.0 && from.next_start() <= 0.0;
-        if is_single {
+        if is_leg(from, to) {
             let own_s = segment_s - passes::rest_to_rest_s(limits, [from, to], &to.tool);
             lost_s += own_s.max(0.0);
             if own_s > most_s {
@@ -188,6 +187,24 @@ pub(crate) fn check_single_segments<A: Axes, E>(
         return Err(PlanError::TooCoarse { leg: worst, s: 0.0 });
     }
     Ok(())
+}
+
+/// What legs of one segment take longer than they would with more, with the speeds at their ends:
+/// on one the speed cannot rise and fall again.
+pub(crate) fn lost_on_single_segments<A: Axes>(limits: &Reciprocals<A>, knots: &[Knot<A>]) -> f64 {
+    let lost = knots.windows(2).map(|pair| match pair {
+        [from, to] if is_leg(from, to) => {
+            let own_s = segment_s(from, to) - passes::up_and_down_s(limits, [from, to]);
+            own_s.max(0.0)
+        }
+        _ => 0.0,
+    });
+    lost.sum()
+}
+
+/// Whether the segment between two knots is all of a leg.
+fn is_leg<A: Axes>(from: &Knot<A>, to: &Knot<A>) -> bool {
+    to.ends_leg && to.ds > 0.0 && from.next_start() <= 0.0
 }
 
 /// The most by which legs of one segment may take longer than with stops at their ends, as a part

@@ -8,7 +8,7 @@ use crate::knots::{Halving, are_resolved, halve};
 use crate::number::SMALLEST;
 use crate::passes::fastest;
 use crate::place::Place;
-use crate::planner::{check_single_segments, duration, lay_all, time};
+use crate::planner::{check_single_segments, duration, lay_all, lost_on_single_segments, time};
 use crate::reciprocals::Reciprocals;
 use crate::rows::Rows;
 use crate::stretch::stretch_between;
@@ -311,6 +311,9 @@ impl Accuracy {
         }
         let keeps = |lost_s: f64| duration_s <= (duration_s - lost_s) * ratio;
         let Lost { last_s, most_s } = Lost::new(limits, knots, spare, duration_s)?;
+        // Segments that are legs cannot be halved to see what they lose.
+        let single_s = lost_on_single_segments(limits, knots);
+        let [last_s, most_s] = [last_s, most_s].map(|lost_s| lost_s + single_s);
         // Where a path turns between two knots, no number of knots nearby shows what it takes.
         let gap = ((ratio - 1.0) * 0.5).min(LARGEST_GAP_TIMED);
         let least_s = duration_s - last_s;

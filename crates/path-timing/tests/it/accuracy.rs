@@ -2,7 +2,7 @@
 
 use core::cell::Cell;
 
-use path_timing::{Accuracy, Knot, Path, PlanError, Table};
+use path_timing::{Accuracy, Corner, Curve, Knot, Path, PlanError, Table, ToolLimits};
 use test_support::{Random, setting};
 
 use crate::support::machine::{Line, limits};
@@ -36,6 +36,52 @@ fn times_are_within_their_ratio() {
     let plans = u64::try_from(2 * FEWEST.len()).unwrap() * paths;
     println!("{RATIOS:?}: {:?} rows", rows.map(|rows| rows / plans));
     assert!(rows[0] > rows[6] && rows[6] > 2 * plans, "{rows:?}");
+}
+
+/// Lines in a row that begin with one segment each, on which the speed cannot rise and fall again,
+/// are as fast as is asked for too.
+#[test]
+fn times_of_lines_of_one_segment_are_within_their_ratio() {
+    let mut random = Random::new(setting("SEED", 4));
+    let mut knots = vec![Knot::default(); 40_000];
+    for _ in 0..setting("PATHS", 60) {
+        let speed = 30.0 * random.size(-0.5, 0.5);
+        let own = [speed; 2].map(|speed| limits(speed, speed * random.size(0.1, 2.5), None));
+        let lines = row_of_lines(&mut random, speed);
+        let fine = Table::plan(lines.clone(), own, |_| FINE, &mut knots);
+        let fine_s = fine.unwrap().duration_s();
+        for max_time_ratio in RATIOS {
+            let accuracy = Accuracy {
+                min_segments: 1,
+                max_departure: 1.0,
+                max_time_ratio,
+            };
+            let paths = lines.clone();
+            let table = Table::plan_within(paths, own, accuracy, |_, _| 0.0, &mut knots).unwrap();
+            let ratio = table.duration_s() / fine_s;
+            assert!(
+                ratio <= max_time_ratio,
+                "{ratio} for {accuracy:?}, {lines:?}"
+            );
+        }
+    }
+}
+
+/// Lines that go on smoothly, each with a feed of its own.
+fn row_of_lines(random: &mut Random, speed: f64) -> Vec<Curve<2>> {
+    let lines = 2 + random.below(5);
+    let mut gone = 0.0;
+    let mut line = || {
+        let from = [0.8 * gone, 0.6 * gone];
+        gone += 5.0 * random.size(-0.7, 0.7);
+        let tool = ToolLimits {
+            feed: speed * random.size(-1.0, 0.3),
+            acceleration: None,
+        };
+        let line = Curve::line(from, [0.8 * gone, 0.6 * gone]).unwrap();
+        line.with_tool(tool).with_corner(Corner::Smooth)
+    };
+    (0..lines).map(|_| line()).collect()
 }
 
 /// What slopes change by where the machine stops asks for no more segments.
