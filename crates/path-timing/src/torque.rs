@@ -20,7 +20,8 @@ pub use table::TorqueTable;
 
 use crate::knots::span_in_a_second;
 use crate::number::sqrt;
-use crate::{Axes, Cubic, Knot, Span};
+use crate::reciprocals::Reciprocals;
+use crate::{Axes, AxisLimits, Cubic, Knot, PlanError, Span};
 
 /// What a machine's axes weigh against a motion: its inverse dynamics. Torques of axes in radians
 /// are in Nm, forces of axes in metres in N; in any unit that goes with the axes', the same
@@ -113,6 +114,20 @@ impl<D: Dynamics> TorqueLimits<D> {
             }
             torques
         })
+    }
+
+    /// The limits of the axes, with the speeds that motors reach at most.
+    fn reached<E>(
+        &self,
+        limits: &<D::Axes as Axes>::Of<AxisLimits>,
+    ) -> Result<Reciprocals<D::Axes>, PlanError<E>> {
+        Reciprocals::<D::Axes>::checked::<E>(limits)?;
+        let mut reached = *limits;
+        let motors = D::Axes::each(&self.motors);
+        for (limits, motor) in D::Axes::each_mut(&mut reached).iter_mut().zip(motors) {
+            limits.speed = limits.speed.min(motor.max_speed());
+        }
+        Ok(Reciprocals::new(&reached))
     }
 
     /// Whether the torques between two knots are known, whatever the speeds there: axes turn

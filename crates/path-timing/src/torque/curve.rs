@@ -179,6 +179,12 @@ impl TorqueCurve {
         if is_within { value } else { 0.0 }
     }
 
+    /// The speed of the last point.
+    pub(super) fn max_speed(&self) -> f64 {
+        let points = self.points.get(..self.count).unwrap_or_default();
+        points.last().map_or(0.0, |[speed, _]| *speed)
+    }
+
     /// The straight pieces, until the function is through: speeds and torques at both ends.
     pub(super) fn each_piece(&self, mut is_last: impl FnMut([f64; 2], [f64; 2]) -> bool) {
         let points = self.points.get(..self.count).unwrap_or_default();

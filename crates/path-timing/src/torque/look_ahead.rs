@@ -88,11 +88,12 @@ impl<D: Dynamics> TorqueLimits<D> {
         I: Iterator<Item = P>,
         F: FnMut(&P) -> Result<u32, PlanError<P::Error>>,
     {
+        let limits = self.reached(&limits)?;
         Ok(TorqueLookAhead {
             torque: self,
             feeder: Feeder::new(paths.into_iter(), segments),
             window: Window::checked(window)?,
-            limits: Reciprocals::checked(&limits)?,
+            limits,
             wanted: 1.0,
             speed: None,
             time_s: 0.0,
@@ -110,8 +111,8 @@ where
 {
     /// Wants a feed of at most 1; 0 holds. The speed goes there as fast as the torques allow.
     ///
-    /// The tool's feed and the speed limits of the axes are multiplied by it; torques stay as they
-    /// are.
+    /// The tool's feed and the highest speeds of axes and motors are multiplied by it; torques stay
+    /// as they are.
     ///
     /// # Errors
     /// [`FeedError`]; the wanted feed stays.

@@ -62,7 +62,7 @@ impl<D: Dynamics> TorqueLimits<D> {
         segments: impl Fn(&P) -> u32,
         knots: &'a mut [Knot<D::Axes>],
     ) -> Result<TorqueTable<'a, D::Axes>, PlanError<P::Error>> {
-        let limits = Reciprocals::checked(&limits)?;
+        let limits = self.reached(&limits)?;
         let lay = |place: &Place<'_, P>, free: &mut [Knot<D::Axes>]| {
             place.lay_resolved(segments(place.leg.path()), |segments| {
                 let laid = place.lay_plainly(&limits, segments, 0.0, free)?;
@@ -95,7 +95,7 @@ impl<D: Dynamics> TorqueLimits<D> {
         knots: &'a mut [Knot<D::Axes>],
     ) -> Result<TorqueTable<'a, D::Axes>, PlanError<P::Error>> {
         accuracy.check()?;
-        let limits = Reciprocals::checked(&limits)?;
+        let limits = self.reached(&limits)?;
         let within = Within {
             min_segments: accuracy.min_segments,
             allowed: accuracy.max_departure,

@@ -16,7 +16,8 @@ impl<D: Dynamics> TorqueLimits<D> {
     ///
     /// Proof. Between two places that are τ apart in time, a torque is within τ²/8 of its largest
     /// second derivative of the straight line between its values there, and so is a speed; friction
-    /// adds at most its largest value, and a motor has at least what it has at the largest speed.
+    /// adds at most its largest value, and a motor has at least what it has at the largest speed, which
+    /// is not above the cubic's.
     #[must_use]
     pub fn utilisation(&self, span: &Span<D::Axes>) -> f64 {
         let bend = self.dynamics.bend(span);
@@ -38,10 +39,12 @@ impl<D: Dynamics> TorqueLimits<D> {
         let part_s = duration_s / f64::from(parts);
         let eighth = part_s * part_s * 0.125;
         let friction = self.dynamics.friction();
-        let mut jerks = D::Axes::zeros();
-        for (jerk, cubic) in (jerks.as_mut_slice().iter_mut()).zip(Cubic::between(from, to)) {
+        let [mut jerks, mut peaks] = [D::Axes::zeros(); 2];
+        let numbers = (jerks.as_mut_slice().iter_mut()).zip(peaks.as_mut_slice());
+        for ((jerk, peak), cubic) in numbers.zip(Cubic::between(from, to)) {
             let [a0, a1] = cubic.accelerations();
             *jerk = (a1 - a0).abs() / duration_s;
+            *peak = cubic.peak_speed();
         }
         let [mut most, mut at_nodes] = [0.0; 2];
         let mut before = self.at(from, to, 0.0);
@@ -49,13 +52,13 @@ impl<D: Dynamics> TorqueLimits<D> {
             let here = self.at(from, to, f64::from(part) / f64::from(parts));
             let motors = A::<D>::each(&self.motors).iter();
             let axes = motors.zip(A::<D>::each(&friction)).zip(bend.as_slice());
-            let axes = axes.zip(jerks.as_slice()).enumerate();
-            for (axis, (((motor, friction), bend), jerk)) in axes {
+            let axes = axes.zip(jerks.as_slice().iter().zip(peaks.as_slice()));
+            for (axis, (((motor, friction), bend), (jerk, peak))) in axes.enumerate() {
                 let [(v0, t0), (v1, t1)] = [&before, &here].map(|(velocity, torque)| {
                     let of = |numbers: &D::Axes| numbers.as_slice().get(axis).copied();
                     (of(velocity).unwrap_or(0.0), of(torque).unwrap_or(0.0))
                 });
-                let speed = v0.abs().max(v1.abs()) + eighth * jerk;
+                let speed = (v0.abs().max(v1.abs()) + eighth * jerk).min(*peak);
                 let bent = eighth * (bend + friction.viscous * jerk);
                 // The sign of a speed that may be 0 between both places is not known.
                 let turns = sign(v0) * sign(v1) < 0.0;

@@ -3,7 +3,8 @@
 use core::fmt::Debug;
 
 use path_timing::{
-    Axes, AxisLimits, Curve, Dynamics, Knot, Path, PlanError, Row, Span, TorqueCurve, TorqueLimits,
+    Axes, AxisLimits, Cubic, Curve, Dynamics, Knot, Path, PlanError, Row, Span, TorqueCurve,
+    TorqueLimits,
 };
 use proptest::prelude::*;
 use scara_kin::{ArmDynamics, ArmMasses, ArmPath, Elbow, JointDrive};
@@ -76,6 +77,33 @@ fn a_stream_is_as_fast_as_a_table() {
             }
         }
     }
+}
+
+/// At the speed up to which a motor has torque all along, a cubic is a little faster between rows:
+/// tables were refused there, and streams rested.
+#[test]
+fn motors_go_at_their_highest_speed() {
+    for max_speed in [0.5, 1.0, 2.0, 3.0] {
+        let motors = [30.0, 12.0].map(|torque| TorqueCurve::constant(torque, max_speed).unwrap());
+        let limits = limits(1.0, motors);
+        for ends in LINES {
+            let (rows, table_s) = planned(&limits, line(ends), 200);
+            let at_most = most_speed(&rows) / max_speed;
+            assert!(at_most <= 1.0 && most(&limits, &rows) <= WITHIN);
+            let rows = streamed(&limits, &[line(ends)], 200, 512, &[]);
+            let slower = end_s(&rows) / table_s;
+            println!("up to {at_most:.6} of {max_speed}: {slower:.5}");
+            assert!(most(&limits, &rows) <= WITHIN && slower <= SLOWER);
+        }
+    }
+}
+
+/// The largest speed of an axis.
+fn most_speed(rows: &[Row<[f64; 2]>]) -> f64 {
+    let cubics = rows
+        .windows(2)
+        .flat_map(|pair| Cubic::between(&pair[0], &pair[1]));
+    cubics.map(|cubic| cubic.peak_speed()).fold(0.0, f64::max)
 }
 
 /// Braking takes no more than the second half of a motion from rest to rest, and two segments.
