@@ -7,6 +7,7 @@
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
+mod accuracy;
 mod axes;
 mod cubic;
 mod curve;
@@ -40,6 +41,7 @@ mod table;
 mod torque;
 mod verify;
 
+pub use accuracy::Accuracy;
 pub use axes::{Axes, AxisLimits, ToolLimits};
 pub use cubic::Cubic;
 pub use curve::{
@@ -59,7 +61,7 @@ pub use set_points::{Cia402Scale, Cia402Target, SetPoint, SetPoints, TargetError
 pub use shaper::{Impulse, Mode, Shaped, ShapedError, Shaper, ShaperError, TryRow};
 pub use short_rows::ShortRows;
 pub use span::Span;
-pub use table::{Accuracy, Table};
+pub use table::Table;
 pub use torque::{
     Dynamics, Friction, TorqueCurve, TorqueCurveError, TorqueLimits, TorqueLookAhead, TorqueTable,
 };

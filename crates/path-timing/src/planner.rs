@@ -165,8 +165,8 @@ pub(crate) fn duration<A: Axes, E>(knots: &[Knot<A>]) -> Result<f64, PlanError<E
 /// Refuses a plan that legs of one segment make slow, with the worst of them: on one segment the
 /// speed cannot rise and fall again, and between two slow corners it is slow all the way.
 pub(crate) fn check_single_segments<A: Axes, E>(
-    limits: &Reciprocals<A>,
     knots: &[Knot<A>],
+    rest_to_rest_s: impl Fn([&Knot<A>; 2]) -> f64,
 ) -> Result<(), PlanError<E>> {
     let (mut time_s, mut lost_s, mut leg) = (0.0, 0.0, 0_usize);
     let (mut most_s, mut worst) = (0.0, 0);
@@ -176,7 +176,7 @@ pub(crate) fn check_single_segments<A: Axes, E>(
         let segment_s = segment_s(from, to);
         time_s += segment_s;
         if is_leg(from, to) {
-            let own_s = segment_s - passes::rest_to_rest_s(limits, [from, to], &to.tool);
+            let own_s = segment_s - rest_to_rest_s([from, to]);
             lost_s += own_s.max(0.0);
             if own_s > most_s {
                 (most_s, worst) = (own_s, leg);

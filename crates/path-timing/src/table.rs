@@ -3,16 +3,16 @@
 use core::cell::Cell;
 use core::convert::Infallible;
 
-use crate::departure::{Speeds, Within, check_allowed};
-use crate::knots::{Halving, are_resolved, halve};
+use crate::accuracy::{Planned, Plans};
+use crate::departure::{Speeds, Within};
 use crate::number::SMALLEST;
-use crate::passes::fastest;
+use crate::passes::{fastest, rest_to_rest_s};
 use crate::place::Place;
-use crate::planner::{check_single_segments, duration, lay_all, lost_on_single_segments, time};
+use crate::planner::{check_single_segments, duration, lay_all, time};
 use crate::reciprocals::Reciprocals;
 use crate::rows::Rows;
 use crate::stretch::stretch_between;
-use crate::{Axes, AxisLimits, Knot, Path, PlanError, Span};
+use crate::{Accuracy, Axes, AxisLimits, Knot, Path, PlanError, Span};
 
 /// A position-velocity-time table along one path or several: every axis runs a cubic from each row
 /// to the next, with the positions and slopes of the path at the rows.
@@ -37,23 +37,6 @@ pub struct Table<'a, A: Axes> {
     pub(crate) duration_s: f64,
 }
 
-/// How near to the path and to the least time a table has to be.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(clippy::exhaustive_structs, reason = "named fields")]
-pub struct Accuracy {
-    /// Fewest segments of each path.
-    pub min_segments: u32,
-    /// Largest bound of the tool's departure, in the unit of that bound.
-    pub max_departure: f64,
-    /// Largest time, relative to what more segments would reach: above 1, such as 1.02; infinite
-    /// where the departure alone counts. It is judged by the change of the time with the number of
-    /// segments, of which plans are made in the memory beside the table's: half as much again.
-    /// Where there is no room for the segments with which that is sure, a plan is taken that
-    /// changes by no more with the last doubling of them, unless finer plans have shown that it is
-    /// slower.
-    pub max_time_ratio: f64,
-}
-
 impl<'a, A: Axes> Table<'a, A> {
     /// Plans the table in memory of the caller: a knot for each row. `segments` says how many a
     /// path has: they are at least 2 from rest to rest, or from a slow corner to another, and up to
@@ -76,7 +59,7 @@ impl<'a, A: Axes> Table<'a, A> {
         };
         let knots = lay_all(paths.into_iter(), &limits, knots, lay)?;
         let duration_s = time(&limits, knots)?;
-        check_single_segments(&limits, knots)?;
+        check_single_segments(knots, |ends| PlansOfAxes(&limits).rest_to_rest_s(ends))?;
         Ok(Self::new(knots, limits, duration_s))
     }
 
@@ -110,7 +93,7 @@ impl<'a, A: Axes> Table<'a, A> {
         let knots = lay_all(paths.into_iter(), &exact, knots, lay)?;
         fastest(&limits, knots);
         let duration_s = duration(knots)?;
-        check_single_segments(&exact, knots)?;
+        check_single_segments(knots, |ends| PlansOfAxes(&exact).rest_to_rest_s(ends))?;
         Ok(Self::new(knots, exact, duration_s))
     }
 
@@ -171,52 +154,24 @@ impl<'a, A: Axes> Table<'a, A> {
             is_plain: false,
             planned: Cell::new(0),
         };
-        // A number of doublings that is likely enough, for where there is no room to be sure, with
-        // its time; and the least time, as far as the finest plan shows it.
-        let (mut doublings, mut likely, mut is_last) = (0, None, false);
-        let mut least_s = 0.0;
-        loop {
+        let lay = |doublings, knots: &mut [Knot<A>]| {
             let lay = |place: &Place<'_, P>, free: &mut [Knot<A>]| {
                 within.lay(place, &limits, doublings, free)
             };
-            let judged = lay_all(paths.clone().into_iter(), &limits, knots, lay)
-                .map(|own| own.len())
-                .and_then(|used| {
-                    let (own, spare) = knots.split_at_mut(used.min(knots.len()));
-                    let duration_s = if within.planned.get() == own.len() {
-                        duration(own)?
-                    } else {
-                        time(&limits, own)?
-                    };
-                    let verdict = accuracy.judge(&limits, own, spare, duration_s);
-                    Ok((used, duration_s, verdict?))
-                });
-            match (judged, likely) {
-                (Ok((used, duration_s, verdict)), _) => {
-                    least_s = match verdict {
-                        Verdict::Slow { least_s } if !is_last => least_s,
-                        Verdict::LikelyFast { least_s } if !is_last => {
-                            likely = Some((doublings, duration_s));
-                            least_s
-                        }
-                        _ => {
-                            let (own, _) = knots.split_at(used.min(knots.len()));
-                            return Ok(Self::new(own, limits, duration_s));
-                        }
-                    };
-                }
-                // Twice as many knots stand elsewhere.
-                (Err(PlanError::TooCoarse { .. }), _) if doublings > 0 => {}
-                (Err(PlanError::Memory { .. }), Some((enough, time_s)))
-                    if !is_last && time_s <= least_s * accuracy.max_time_ratio =>
-                {
-                    (doublings, is_last) = (enough, true);
-                    continue;
-                }
-                (Err(refused), _) => return Err(refused),
-            }
-            doublings += 1;
-        }
+            let own = lay_all(paths.clone().into_iter(), &limits, knots, lay)?;
+            let duration_s = if within.planned.get() == own.len() {
+                duration(own)?
+            } else {
+                time(&limits, own)?
+            };
+            let planned = Planned {
+                stretch: 1.0,
+                duration_s,
+            };
+            Ok((own.len(), Some(planned)))
+        };
+        let (knots, planned) = accuracy.plan(&limits, &PlansOfAxes(&limits), knots, lay)?;
+        Ok(Self::new(knots, limits, planned.duration_s))
     }
 
     pub(crate) fn new(knots: &'a [Knot<A>], limits: Reciprocals<A>, duration_s: f64) -> Self {
@@ -284,121 +239,17 @@ impl<'a, A: Axes> Table<'a, A> {
     }
 }
 
-impl Accuracy {
-    pub(crate) fn check<E>(&self) -> Result<(), PlanError<E>> {
-        check_allowed(self.max_departure)?;
-        let max_time_ratio = self.max_time_ratio;
-        if max_time_ratio > 1.0 {
-            return Ok(());
-        }
-        Err(PlanError::TimeRatio { max_time_ratio })
+/// Planned within the limits of the axes.
+struct PlansOfAxes<'a, A: Axes>(&'a Reciprocals<A>);
+
+impl<A: Axes> Plans<A> for PlansOfAxes<'_, A> {
+    fn coarser_s(&self, knots: &mut [Knot<A>]) -> f64 {
+        stretch_all(self.0, knots);
+        time::<_, Infallible>(self.0, knots).unwrap_or(f64::INFINITY)
     }
 
-    /// Whether planned knots are as fast as is asked for.
-    fn judge<A: Axes, E>(
-        &self,
-        limits: &Reciprocals<A>,
-        knots: &[Knot<A>],
-        spare: &mut [Knot<A>],
-        duration_s: f64,
-    ) -> Result<Verdict, PlanError<E>> {
-        if check_single_segments::<_, E>(limits, knots).is_err() {
-            return Ok(Verdict::Slow { least_s: 0.0 });
-        }
-        let ratio = self.max_time_ratio;
-        if !ratio.is_finite() {
-            return Ok(Verdict::Fast);
-        }
-        let keeps = |lost_s: f64| duration_s <= (duration_s - lost_s) * ratio;
-        let Lost { last_s, most_s } = Lost::new(limits, knots, spare, duration_s)?;
-        // Segments that are legs cannot be halved to see what they lose.
-        let single_s = lost_on_single_segments(limits, knots);
-        let [last_s, most_s] = [last_s, most_s].map(|lost_s| lost_s + single_s);
-        // Where a path turns between two knots, no number of knots nearby shows what it takes.
-        let gap = ((ratio - 1.0) * 0.5).min(LARGEST_GAP_TIMED);
-        let least_s = duration_s - last_s;
-        Ok(if keeps(most_s) && are_resolved(limits, knots, gap) {
-            Verdict::Fast
-        } else if keeps(last_s) {
-            Verdict::LikelyFast { least_s }
-        } else {
-            Verdict::Slow { least_s }
-        })
-    }
-}
-
-/// Whether a plan is as fast as is asked for; if that is not sure, with the least time as far as
-/// the last doubling of its segments shows it.
-#[derive(Debug, Clone, Copy)]
-enum Verdict {
-    Fast,
-    /// By the last doubling of its segments alone.
-    LikelyFast {
-        least_s: f64,
-    },
-    Slow {
-        least_s: f64,
-    },
-}
-
-/// The part of the steepest slope by which slopes may disagree where the time counts: at most half
-/// as much as the time may be longer.
-const LARGEST_GAP_TIMED: f64 = 0.05;
-
-/// How often segments are halved to see what is lost, and the part of a loss that twice the
-/// segments have at most: half, and something for chance. With these none of 2,100 plans of random
-/// paths missed a ratio.
-const HALVINGS: u32 = 3;
-const LEFT: f64 = 0.6;
-
-/// By how much the time of planned knots may be above the best.
-struct Lost {
-    /// What half of the segments take longer.
-    last_s: f64,
-    /// The most that is lost; infinite where fewer knots have no plan.
-    ///
-    /// It falls at least in proportion to the length of the segments. So it is at most what half
-    /// the segments take longer, and half of what a quarter of them take longer than those, and so
-    /// on: the largest of these, in case one is small by chance.
-    most_s: f64,
-}
-
-impl Lost {
-    /// Plans fewer segments in the memory beside the knots.
-    fn new<A: Axes, E>(
-        limits: &Reciprocals<A>,
-        knots: &[Knot<A>],
-        spare: &mut [Knot<A>],
-        duration_s: f64,
-    ) -> Result<Self, PlanError<E>> {
-        let (mut halving, mut used) = (Halving::default(), 0_usize);
-        for kept in knots.iter().filter_map(|knot| halving.keep(knot)) {
-            if let Some(slot) = spare.get_mut(used) {
-                *slot = kept;
-            }
-            used = used.saturating_add(1);
-        }
-        let [needed, available] = [used, spare.len()].map(|more| knots.len().saturating_add(more));
-        let Some(fewer) = spare.get_mut(..used) else {
-            return Err(PlanError::Memory { needed, available });
-        };
-        let (mut finer_s, mut part) = (duration_s, 1.0);
-        let [mut last_s, mut most_s] = [0.0_f64; 2];
-        for halvings in 0..HALVINGS {
-            let (own, _) = fewer.split_at_mut(used.min(fewer.len()));
-            stretch_all(limits, own);
-            let coarser_s = time::<_, E>(limits, own).unwrap_or(f64::INFINITY);
-            if halvings == 0 {
-                last_s = (coarser_s - duration_s).max(0.0);
-            }
-            most_s = most_s.max((coarser_s - finer_s).abs() * part);
-            if most_s == f64::INFINITY {
-                break;
-            }
-            (finer_s, part) = (coarser_s, part * LEFT);
-            used = halve(own);
-        }
-        Ok(Self { last_s, most_s })
+    fn rest_to_rest_s(&self, [from, to]: [&Knot<A>; 2]) -> f64 {
+        rest_to_rest_s(self.0, [from, to], &to.tool)
     }
 }
 

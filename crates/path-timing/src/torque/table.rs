@@ -1,15 +1,19 @@
 //! Tables within the torque of their motors.
 
 use core::cell::Cell;
+use core::convert::Infallible;
 
+use super::laden::Laden;
 use super::{Dynamics, Lack, MORE, TorqueLimits, passes, slowed};
+use crate::accuracy::{Planned, Plans};
 use crate::departure::{Speeds, Within};
 use crate::knots::span;
 use crate::number::larger_or_nan;
 use crate::passes::segment_s;
 use crate::place::Place;
-use crate::planner::lay_all;
+use crate::planner::{check_single_segments, lay_all};
 use crate::reciprocals::Reciprocals;
+use crate::stepping::Pairs;
 use crate::{Accuracy, Axes, AxisLimits, Knot, Path, PlanError, Rows, Span, Table};
 
 /// A position-velocity-time table with which no motor gives more torque than it has.
@@ -22,6 +26,14 @@ pub struct TorqueTable<'a, A: Axes> {
 }
 
 impl<'a, A: Axes> TorqueTable<'a, A> {
+    fn new(knots: &'a [Knot<A>], limits: Reciprocals<A>, planned: Planned) -> Self {
+        let table = Table::new(knots, limits, planned.duration_s);
+        let stretch = planned.stretch;
+        Self {
+            table: Table { stretch, ..table },
+        }
+    }
+
     /// The rows in their order.
     #[must_use]
     pub fn rows(&self) -> Rows<'a, A> {
@@ -71,18 +83,17 @@ impl<D: Dynamics> TorqueLimits<D> {
             })
         };
         let knots = lay_all(paths.into_iter(), &limits, knots, lay)?;
-        let Some([stretch, duration_s]) = self.time(&limits, knots)? else {
+        let Some(planned) = self.time(&limits, knots)? else {
             return Err(self.too_coarse(&Table::new(knots, limits, 0.0)));
         };
-        let table = Table::new(knots, limits, duration_s);
-        Ok(TorqueTable {
-            table: Table { stretch, ..table },
-        })
+        check_single_segments(knots, |ends| {
+            PlansOfMotors(self, &limits).rest_to_rest_s(ends)
+        })?;
+        Ok(TorqueTable::new(knots, limits, planned))
     }
 
     /// Plans as [`plan`](Self::plan) does, with segments that keep a departure at any speeds, as
-    /// [`Table::plan_within_at_any_feed`] makes them, and twice as many until the time changes by
-    /// no more than `accuracy` allows.
+    /// [`Table::plan_within_at_any_feed`] makes them.
     ///
     /// # Errors
     /// [`PlanError`]; also where `knots` are too few.
@@ -104,33 +115,19 @@ impl<D: Dynamics> TorqueLimits<D> {
             is_plain: true,
             planned: Cell::new(0),
         };
-        let mut coarse_s = f64::INFINITY;
-        let mut doublings = 0;
-        loop {
+        let lay = |doublings, knots: &mut [Knot<D::Axes>]| {
             let lay = |place: &Place<'_, P>, free: &mut [Knot<D::Axes>]| {
                 within.lay(place, &limits, doublings, free)
             };
-            let laid = lay_all(paths.clone().into_iter(), &limits, knots, lay)?;
-            let used = laid.len();
-            doublings = doublings.saturating_add(1);
-            let Some([stretch, duration_s]) = self.time(&limits, laid)? else {
-                continue;
-            };
-            let best_s = duration_s - (coarse_s - duration_s).max(0.0);
-            let ratio = accuracy.max_time_ratio;
-            if !ratio.is_finite() || duration_s <= best_s * ratio {
-                let (own, _) = knots.split_at(used.min(knots.len()));
-                let table = Table::new(own, limits, duration_s);
-                return Ok(TorqueTable {
-                    table: Table { stretch, ..table },
-                });
-            }
-            coarse_s = duration_s;
-        }
+            let own = lay_all(paths.clone().into_iter(), &limits, knots, lay)?;
+            Ok((own.len(), self.time(&limits, own)?))
+        };
+        let (knots, planned) = accuracy.plan(&limits, &PlansOfMotors(self, &limits), knots, lay)?;
+        Ok(TorqueTable::new(knots, limits, planned))
     }
 
-    /// Finds the speeds of knots; by what the table is then slowed, and its time. None where
-    /// segments are so long that nothing is known of the torques between their ends.
+    /// Finds the speeds of knots; what the table then takes. None where segments are so long that
+    /// nothing is known of the torques between their ends.
     ///
     /// Segments that ask for more between their ends are planned anew with less of the torques,
     /// until the rest is little, and slowing the whole costs as little: where gravity helps a fast
@@ -139,7 +136,7 @@ impl<D: Dynamics> TorqueLimits<D> {
         &self,
         limits: &Reciprocals<D::Axes>,
         knots: &mut [Knot<D::Axes>],
-    ) -> Result<Option<[f64; 2]>, PlanError<E>> {
+    ) -> Result<Option<Planned>, PlanError<E>> {
         leave_all(knots);
         for _ in 0..ROUNDS_OF_SHARES {
             passes::fastest(self, limits, knots);
@@ -152,7 +149,7 @@ impl<D: Dynamics> TorqueLimits<D> {
             if most <= 1.0 + LITTLE {
                 let table = Table::new(knots, *limits, duration_s);
                 let slower = self.slow(&table, most);
-                if let Some(slower) = slower.ok().filter(|slower| slower[0] <= 1.0 + LITTLE) {
+                if let Some(slower) = slower.ok().filter(|slower| slower.stretch <= 1.0 + LITTLE) {
                     return Ok(Some(slower));
                 }
             }
@@ -165,15 +162,17 @@ impl<D: Dynamics> TorqueLimits<D> {
         }
     }
 
-    /// By what a table that asks for so much at `most` is slowed until no motor lacks torque, and
-    /// its time then.
-    fn slow(&self, table: &Table<'_, D::Axes>, most: f64) -> Result<[f64; 2], Lack> {
+    /// What a table that asks for so much at `most` takes, slowed until no motor lacks torque.
+    fn slow(&self, table: &Table<'_, D::Axes>, most: f64) -> Result<Planned, Lack> {
         let slower = |speed| table.at_speed(speed);
         let speed = slowed(most, |speed| {
             slower(speed).map_or(f64::NAN, |table| self.asked(&table))
         })?;
         let table = slower(speed).map_err(|_| Lack::Torque)?;
-        Ok([table.stretch, table.duration_s()])
+        Ok(Planned {
+            stretch: table.stretch,
+            duration_s: table.duration_s(),
+        })
     }
 
     /// The largest part of its torque that a motor is asked for.
@@ -215,6 +214,23 @@ impl<D: Dynamics> TorqueLimits<D> {
             from = to;
         }
         most
+    }
+}
+
+/// Planned within the torques of motors.
+struct PlansOfMotors<'a, D: Dynamics>(&'a TorqueLimits<D>, &'a Reciprocals<D::Axes>);
+
+impl<D: Dynamics> Plans<D::Axes> for PlansOfMotors<'_, D> {
+    fn coarser_s(&self, knots: &mut [Knot<D::Axes>]) -> f64 {
+        let planned = self.0.time::<Infallible>(self.1, knots);
+        planned
+            .ok()
+            .flatten()
+            .map_or(f64::INFINITY, |planned| planned.duration_s)
+    }
+
+    fn rest_to_rest_s(&self, [from, to]: [&Knot<D::Axes>; 2]) -> f64 {
+        Laden(self.0).rest_to_rest_s(self.1, [from, to], &to.tool)
     }
 }
 

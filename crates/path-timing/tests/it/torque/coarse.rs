@@ -1,11 +1,14 @@
 //! Segments too long for their torques to be known.
 
 use path_timing::{
-    Curve, Dynamics, Friction, Knot, PlanError, Row, Span, TorqueCurve, TorqueLimits,
+    Accuracy, Corner, Curve, Dynamics, Friction, Knot, PlanError, Row, Span, ToolLimits,
+    TorqueCurve, TorqueLimits,
 };
+use scara_kin::{ArmPath, Elbow};
+use test_support::{Random, setting};
 
 use super::streams::{end_s, streamed};
-use super::{FREE, delta};
+use super::{FREE, WITHIN, arm, constant, delta, limits, stepper};
 
 /// What is known of a segment from rest to rest was not known at each pair of speeds: tables were
 /// refused, and streams rested at its knots.
@@ -70,4 +73,81 @@ fn torques_that_stay_unknown_are_refused_with_their_place() {
         panic!("{refused:?}");
     };
     assert!(*s > 0.0 && *s < 1.0, "{s}");
+}
+
+/// Two lines in a row, with feeds.
+fn lines(places: [[f64; 2]; 3], feeds: [f64; 2]) -> Option<[ArmPath; 2]> {
+    let [from, via, to] = places;
+    let path = |[from, to]: [[f64; 2]; 2], feed| {
+        let tool = ToolLimits {
+            feed,
+            acceleration: None,
+        };
+        let curve = Curve::line(from, to).ok()?.with_tool(tool);
+        let path = arm().path(curve, Elbow::Right).ok()?;
+        Some(path.with_corner(Corner::Smooth))
+    };
+    Some([path([from, via], feeds[0])?, path([via, to], feeds[1])?])
+}
+
+/// On one segment a line cannot go fast that has to be slow at its end.
+#[test]
+fn a_line_that_one_segment_makes_slow_is_refused() {
+    let limits = limits(1.0, constant());
+    let places = [[200.0, 300.0], [230.0, 300.0], [250.0, 300.0]];
+    let lines = lines(places, [1000.0, 10.0]).unwrap();
+    let mut knots = [Knot::default(); 100];
+    let mut planned = |segments| {
+        let table = limits.plan(lines, [FREE; 2], |_| segments, &mut knots);
+        table.map(|table| table.duration_s())
+    };
+    let refused = planned(1);
+    assert!(
+        matches!(refused, Err(PlanError::TooCoarse { leg: 0, .. })),
+        "{refused:?}"
+    );
+    let two_s = planned(2).unwrap();
+    assert!(two_s <= planned(40).unwrap() * 3.0, "{two_s}");
+}
+
+/// Few segments, and what is asked for of their time.
+#[test]
+fn times_are_within_their_ratio() {
+    let mut random = Random::new(setting("SEED", 5));
+    let mut knots = vec![Knot::default(); 8000];
+    let mut rows = 0;
+    for _ in 0..setting("PATHS", 20) {
+        let mut place = || [random.within(-300.0, 300.0), random.within(120.0, 450.0)];
+        let places = [place(), place(), place()];
+        let feeds = [(); 2].map(|()| random.size(1.0, 4.0));
+        let Some(lines) = lines(places, feeds) else {
+            continue;
+        };
+        // A corner of two lines is a stop.
+        let lines = lines.map(|line| line.with_corner(Corner::Stop));
+        for motors in [constant(), stepper()] {
+            let limits = limits(1.0, motors);
+            let fine = limits.plan(lines, [FREE; 2], |_| 400, &mut knots);
+            let fine_s = fine.unwrap().duration_s();
+            for (min_segments, max_time_ratio) in [(1, 1.3), (2, 1.05), (4, 1.02), (7, 1.01)] {
+                let accuracy = Accuracy {
+                    min_segments,
+                    max_departure: 1.0,
+                    max_time_ratio,
+                };
+                let departure = |path: &ArmPath, span: &Span<_>| path.departure(span);
+                let table = limits.plan_within(lines, [FREE; 2], accuracy, departure, &mut knots);
+                let table = table.unwrap();
+                let ratio = table.duration_s() / fine_s;
+                assert!(
+                    ratio <= max_time_ratio,
+                    "{ratio} for {accuracy:?}, {lines:?}"
+                );
+                let mut used = table.spans().map(|span| limits.utilisation(&span));
+                assert!(used.all(|used| used <= WITHIN));
+                rows += table.rows().count();
+            }
+        }
+    }
+    println!("{rows} rows");
 }
