@@ -21,9 +21,9 @@ pub struct Accuracy {
     /// Largest time, relative to what more segments would reach: above 1, such as 1.02; infinite
     /// where the departure alone counts. It is judged by the change of the time with the number of
     /// segments, of which plans are made in the memory beside the table's: half as much again.
-    /// Where there is no room for the segments with which that is sure, a plan is taken that
-    /// changes by no more with the last doubling of them, unless finer plans have shown that it is
-    /// slower.
+    /// Where there is no room for the segments with which that is sure, the fastest plan is taken
+    /// that changes by no more with the last doubling of them, unless finer plans have shown that it
+    /// is slower.
     pub max_time_ratio: f64,
 }
 
@@ -80,7 +80,10 @@ impl Accuracy {
                     least_s = match verdict {
                         Verdict::Slow { least_s } if !is_last => least_s,
                         Verdict::LikelyFast { least_s } if !is_last => {
-                            likely = Some((doublings, planned.duration_s));
+                            let is_faster = |(_, time_s): (u32, f64)| planned.duration_s < time_s;
+                            if likely.is_none_or(is_faster) {
+                                likely = Some((doublings, planned.duration_s));
+                            }
                             least_s
                         }
                         _ => {

@@ -84,6 +84,30 @@ fn row_of_lines(random: &mut Random, speed: f64) -> Vec<Curve<2>> {
     (0..lines).map(|_| line()).collect()
 }
 
+/// With a limit of jerk a plan may be faster than all finer ones, by more than is asked for: where
+/// memory ends, it is taken, and not the finest.
+#[test]
+fn more_segments_are_not_taken_where_they_are_slower() {
+    let own = [limits(190.0, 400.0, Some(7000.0)); 2];
+    let (from, corner) = ([0.0, 0.0], [0.56, 0.0]);
+    let arc = Curve::arc(corner, [0.56, 0.65], [1.0, 0.0], 0.2).unwrap();
+    let line = Curve::line(arc.end(), [1.2, -0.9]).unwrap();
+    let paths = [Curve::line(from, corner).unwrap(), arc, line];
+    let paths = paths.map(|path| path.with_corner(Corner::Jump([25.0; 2])));
+    let accuracy = Accuracy {
+        min_segments: 2,
+        max_departure: 1.0,
+        max_time_ratio: 1.001,
+    };
+    let mut knots = vec![Knot::default(); 4000];
+    let table = Table::plan(paths, own, |_| 100, &mut knots);
+    let fine_s = table.unwrap().duration_s();
+    let table = Table::plan_within(paths, own, accuracy, |_, _| 0.0, &mut knots).unwrap();
+    let (rows, time_s) = (table.len(), table.duration_s());
+    println!("{rows} rows, {time_s} s of {fine_s}");
+    assert!(rows < 100 && time_s < fine_s);
+}
+
 /// What slopes change by where the machine stops asks for no more segments.
 #[test]
 fn slopes_may_change_where_the_machine_stops() {
