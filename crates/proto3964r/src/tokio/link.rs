@@ -5,7 +5,10 @@ use std::io;
 
 use ::tokio::{
     io::{AsyncRead, AsyncWrite},
-    sync::{Mutex, mpsc},
+    sync::{
+        Mutex,
+        mpsc::{self, error::TrySendError},
+    },
 };
 use thiserror::Error;
 
@@ -24,7 +27,8 @@ use crate::{
 /// the outcomes of jobs after them, too. Dropping the link ends the task and closes the stream.
 ///
 /// With [`Config::acknowledge_wait_ms`] nothing waits that has an acknowledgement: a telegram is
-/// acknowledged when [`receive`](Self::receive) hands it out, or when its [`Incoming`] is accepted.
+/// acknowledged when [`receive`](Self::receive) hands it out, or when its [`Incoming`] is accepted;
+/// one that is not fetched in that time is refused, and keeps no outcome back.
 ///
 /// A lost connection is final: every call reports it as [`Lost`], and whether and when to connect
 /// again is the caller's decision.
@@ -189,12 +193,15 @@ async fn work<const N: usize>(
     let is_held = driver.station_mut().config().acknowledge_wait_ms > 0;
     // Of the telegram whose answer the station holds.
     let mut decision = Decision::NONE;
+    // That telegram, while one whose time is over is still in the queue.
+    let mut waiting = None;
     let mut caller = Caller::NONE;
     let mut is_closing = false;
     loop {
-        // While the queue is full a telegram stays in the station, which makes the partner wait.
+        // While the queue is full a telegram that has been acknowledged stays in the station, which
+        // makes the partner wait.
         let station = driver.station_mut();
-        while !(station.holds_telegram() && telegrams.capacity() == 0)
+        while !(!is_held && station.holds_telegram() && telegrams.capacity() == 0)
             && let Some(event) = station.poll_event()
         {
             observer(event);
@@ -211,8 +218,10 @@ async fn work<const N: usize>(
                     } else {
                         Incoming::acknowledged(telegram)
                     };
-                    // The queue has room, and is closed only when the link is dropped.
-                    drop(telegrams.try_send(incoming));
+                    // Closed, the link has been dropped.
+                    if let Err(TrySendError::Full(incoming)) = telegrams.try_send(incoming) {
+                        waiting = Some(incoming);
+                    }
                 }
                 Event::Sent { .. } => caller.tell(Ok(())),
                 Event::Failed(failure) => caller.tell(Err(failure.into())),
@@ -221,7 +230,7 @@ async fn work<const N: usize>(
         }
         let queue_is_full = station.holds_telegram();
         if station.activity() != Activity::AwaitUser {
-            decision = Decision::NONE;
+            (decision, waiting) = (Decision::NONE, None);
         }
         // Closed, a link still takes what has been acknowledged; dropped, it does not.
         if is_closing && (!queue_is_full || is_held || telegrams.is_closed()) {
@@ -250,7 +259,11 @@ async fn work<const N: usize>(
                 Some(accepted) => drop(accepted.send(driver.accept())),
                 None => _ = driver.refuse(),
             },
-            permit = telegrams.reserve(), if queue_is_full => drop(permit),
+            permit = telegrams.reserve(), if queue_is_full || waiting.is_some() => {
+                if let (Ok(permit), Some(incoming)) = (permit, waiting.take()) {
+                    permit.send(incoming);
+                }
+            }
         }
     }
 }

@@ -170,6 +170,32 @@ async fn what_is_not_fetched_makes_the_partner_wait_and_is_not_lost() {
     }
 }
 
+/// A telegram that nobody answers is refused by the end of its time. It kept the outcomes of jobs
+/// for itself: a gateway that was read anew with a command under way waited for that for ever.
+#[tokio::test(start_paused = true)]
+async fn what_is_not_accepted_keeps_no_outcome_back() {
+    let (here, there) = duplex(1024);
+    let held = Config {
+        acknowledge_wait_ms: 300,
+        ..LOW
+    };
+    let (link, partner) = (Link::new(here, held), Link::new(there, HIGH));
+    let sending = tokio::spawn(async move {
+        // One after the other is given up by the partner.
+        while !matches!(partner.send(b"12.5 kg").await, Err(SendError::Lost(_))) {
+            sleep(Duration::from_millis(700)).await;
+        }
+    });
+    sleep(Duration::from_secs(60)).await;
+    let sent = timeout(Duration::from_secs(60), link.send(b"tare")).await;
+    sent.expect("an outcome").ok();
+    // What comes next is there for whoever fetches again.
+    let incoming = timeout(Duration::from_secs(60), link.incoming()).await;
+    assert!(incoming.expect("a telegram").unwrap().accept().await);
+    drop(link);
+    sending.await.unwrap();
+}
+
 #[tokio::test]
 async fn a_closed_link_hands_back_all_that_it_has_acknowledged() {
     /// Closed in the middle of a telegram, between two, and with a full queue.

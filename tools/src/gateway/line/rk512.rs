@@ -77,16 +77,18 @@ impl Line {
             served: source(),
             numbers: Mutex::new(&mut self.numbers),
         };
-        // Set when the line is lost or the gateway stops: no job is begun after that.
+        // Set when the line is lost or is to be closed: no job is begun after that.
         let closing = stop.child_token();
+        // Set when the last own job has ended, until when the partner's jobs are answered.
+        let ended = CancellationToken::new();
         let serving = async {
-            let why = desk.serve(&closing).await;
+            let why = desk.serve(&ended).await;
             closing.cancel();
             why
         };
         let exchanging = async {
             let why = desk.exchange(&mut self.jobs, &closing).await;
-            closing.cancel();
+            ended.cancel();
             why
         };
         let (served, exchanged) = tokio::join!(serving, exchanging);
@@ -237,12 +239,13 @@ impl Desk<'_> {
         Ok(())
     }
 
-    /// Answers the partner's jobs until the line is lost, and says why, or is to be closed.
-    async fn serve(&self, closing: &CancellationToken) -> Option<String> {
+    /// Answers the partner's jobs until the line is lost, and says why, or the last own job has
+    /// ended.
+    async fn serve(&self, ended: &CancellationToken) -> Option<String> {
         loop {
             let held = tokio::select! {
                 held = self.partner.held() => held,
-                () = closing.cancelled() => return None,
+                () = ended.cancelled() => return None,
             };
             match held {
                 Ok(job) => self.take(job).await,

@@ -42,8 +42,10 @@ impl Line {
             settings.acknowledge_wait_ms = (settings.qvz_ms / 4 * QUARTERS_OF_QVZ).max(1);
         }
         let link = Link::with_observer(stream, settings, self.hub.observer(&self.name));
-        // Set when the line is lost or the gateway stops: no job is begun after that.
+        // Set when the line is lost or is to be closed: no job is begun after that.
         let closing = stop.child_token();
+        // Set when the last job has ended, until when the partner may send.
+        let ended = CancellationToken::new();
         let (hub, name) = (&*self.hub, self.name.as_str());
         let mut desk = Desk {
             hub,
@@ -56,17 +58,20 @@ impl Line {
             let lost = loop {
                 let incoming = tokio::select! {
                     incoming = link.incoming() => incoming,
-                    () = closing.cancelled() => break None,
+                    () = ended.cancelled() => break None,
                 };
                 match incoming {
-                    Ok(incoming) => desk.received(incoming, &closing).await,
+                    Ok(incoming) => desk.received(incoming, &ended).await,
                     Err(lost) => break Some(lost),
                 }
             };
             closing.cancel();
             lost
         };
-        let sending = send_jobs(&mut self.jobs, &link, hub, name, &closing);
+        let sending = async {
+            send_jobs(&mut self.jobs, &link, hub, name, &closing).await;
+            ended.cancel();
+        };
         let (lost, ()) = tokio::join!(receiving, sending);
         // What was acknowledged to the partner while the last job ended, where nothing is stored.
         for telegram in link.close().await {
@@ -127,14 +132,14 @@ struct Desk<'d> {
 
 impl Desk<'_> {
     /// Makes a telegram safe, then acknowledges it; one that cannot be made safe is refused.
-    async fn received(&mut self, incoming: Incoming, closing: &CancellationToken) {
+    async fn received(&mut self, incoming: Incoming, ended: &CancellationToken) {
         let telegram = incoming.telegram().to_vec();
         self.hub.online(self.name, true);
         let mut arrival = self.number(&telegram);
         if !arrival.is_stored {
             let stored = tokio::select! {
                 stored = self.keep(&telegram, &arrival) => stored.is_ok(),
-                () = closing.cancelled() => false,
+                () = ended.cancelled() => false,
             };
             arrival.is_stored = stored;
         }
