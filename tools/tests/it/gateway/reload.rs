@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 use tokio::{
-    io::{AsyncBufReadExt as _, AsyncWriteExt as _, BufReader, Lines},
+    io::{AsyncBufReadExt as _, AsyncReadExt as _, AsyncWriteExt as _, BufReader, Lines},
     net::{
         TcpStream,
         tcp::{OwnedReadHalf, OwnedWriteHalf},
@@ -113,5 +113,58 @@ async fn what_can_change_does_and_the_rest_is_named() {
     gateway.logs("oven: is no line any more");
     steady.send(b"E").await.unwrap();
     assert_eq!(client.next("telegram").await["line"], "oven");
+    gateway.ends();
+}
+
+const STX: u8 = 0x02;
+const ETX: u8 = 0x03;
+const DLE: u8 = 0x10;
+
+/// What comes next, but for other characters before it.
+async fn awaits(partner: &mut TcpStream, wanted: u8) {
+    while timeout(PATIENCE, partner.read_u8()).await.unwrap().unwrap() != wanted {}
+}
+
+/// A partner with a higher priority sends a telegram and has its acknowledgement.
+async fn sends(partner: &mut TcpStream, telegram: u8) {
+    partner.write_u8(STX).await.unwrap();
+    awaits(partner, DLE).await;
+    let block = [telegram, DLE, ETX, telegram ^ DLE ^ ETX];
+    partner.write_all(&block).await.unwrap();
+    let answer = timeout(PATIENCE, partner.read_u8()).await.unwrap();
+    assert_eq!(answer.unwrap(), DLE);
+}
+
+/// The partner's telegrams were refused while the command was under way, and the second of them kept
+/// the outcome back: the line was never opened anew.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_command_under_way_ends_while_the_partner_sends() {
+    let partner = Partner::new().await;
+    let [tcp, nobody] = free_ports();
+    let config = format!(
+        "name = \"hall\"\nstop_s = 1\n[tcp]\nlisten = \"127.0.0.1:{tcp}\"\n\
+         [mqtt]\nbroker = \"mqtt://127.0.0.1:{nobody}\"\n{}",
+        line("scale", partner.port)
+    );
+    let gateway = Gateway::start(&config);
+    let mut scale = partner.stream().await;
+    let mut client = Client::new(tcp).await;
+    client
+        .command(r#"{"line": "scale", "command": {"id": 7, "send": "41"}}"#)
+        .await;
+    awaits(&mut scale, STX).await;
+    gateway.reload(&format!("{config}silent_after_s = 9\n"));
+    gateway.logs("read again: 1 lines have changed");
+    for telegram in *b"ABC" {
+        sends(&mut scale, telegram).await;
+    }
+    awaits(&mut scale, STX).await;
+    scale.write_u8(DLE).await.unwrap();
+    awaits(&mut scale, ETX).await;
+    scale.read_u8().await.unwrap();
+    scale.write_u8(DLE).await.unwrap();
+    let outcome = client.next("outcome").await;
+    assert_eq!((&outcome["id"], &outcome["ok"]), (&7.into(), &true.into()));
+    partner.stream().await;
     gateway.ends();
 }
