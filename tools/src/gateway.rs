@@ -79,10 +79,12 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     }
     let environment = env_logger::Env::default().default_filter_or("info");
     env_logger::Builder::from_env(environment).init();
-    let (outbox, known) = keep(&config)?;
-    let (hub, jobs) = Hub::new(&config, outbox, known);
     // On one thread: a core carries hundreds of lines.
-    block_on(work(&options.config, config, hub, jobs, session))
+    block_on(async {
+        // Before the store is opened, which may take a while: until then SIGHUP would be the end.
+        let hangups = Hangups::new().context("SIGHUP")?;
+        work(&options.config, config, session, hangups).await
+    })
 }
 
 /// The settings of the connection to what takes the messages.
@@ -121,10 +123,11 @@ fn keep(config: &Config) -> Result<(Option<Outbox>, Known)> {
 async fn work(
     path: &Path,
     config: Config,
-    hub: Arc<Hub>,
-    jobs: Vec<tokio::sync::mpsc::Receiver<job::Job>>,
     session: Option<Session>,
+    mut hangups: Hangups,
 ) -> Result<ExitCode> {
+    let (outbox, known) = keep(&config)?;
+    let (hub, jobs) = Hub::new(&config, outbox, known);
     let mut services = JoinSet::new();
     if let Some(listener) = listen(config.tcp.as_ref().map(Spanned::get_ref)).await? {
         services.spawn(tcp::serve(listener, Arc::clone(&hub)));
@@ -141,7 +144,6 @@ async fn work(
     let finishing = CancellationToken::new();
     let mut delivery = tokio::spawn(deliver(session, Arc::clone(&hub), finishing.clone()));
     let mut lines = JoinSet::new();
-    let mut hangups = Hangups::new().context("SIGHUP")?;
     let (mut reload, settings) = Reload::new(path.to_owned(), config, &hub);
     for (settings, jobs) in settings.into_iter().zip(jobs) {
         lines.spawn(Line::new(settings, Arc::clone(&hub), jobs).run());
