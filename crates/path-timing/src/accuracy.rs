@@ -8,6 +8,7 @@ use crate::departure::check_allowed;
 use crate::knots::{Halving, are_resolved, halve};
 use crate::planner::{check_single_segments, lost_on_single_segments};
 use crate::reciprocals::Reciprocals;
+use crate::stepping::Pairs;
 use crate::{Axes, Knot, PlanError};
 
 /// How near to the path and to the least time a table has to be.
@@ -35,15 +36,6 @@ pub(crate) struct Planned {
     pub(crate) duration_s: f64,
 }
 
-/// What gives knots their speeds.
-pub(crate) trait Plans<A: Axes> {
-    /// The time of every second knot of a plan, planned anew; infinite without a plan.
-    fn coarser_s(&self, knots: &mut [Knot<A>]) -> f64;
-
-    /// The shortest time from rest to rest between two knots.
-    fn rest_to_rest_s(&self, knots: [&Knot<A>; 2]) -> f64;
-}
-
 impl Accuracy {
     pub(crate) fn check<E>(&self) -> Result<(), PlanError<E>> {
         check_allowed(self.max_departure)?;
@@ -55,13 +47,15 @@ impl Accuracy {
     }
 
     /// The knots of a plan, and what it takes. `lay` lays the knots of all paths, with segments
-    /// doubled in number some times, and plans them, if a plan is found.
+    /// doubled in number some times, and plans them, if a plan is found; `coarser_s` plans every
+    /// second knot of a plan anew, for its time, which is infinite without a plan.
     pub(crate) fn plan<'a, A: Axes, E>(
         &self,
         limits: &Reciprocals<A>,
-        plans: &impl Plans<A>,
+        pairs: &impl Pairs<A>,
         knots: &'a mut [Knot<A>],
         lay: impl Fn(u32, &mut [Knot<A>]) -> Result<(usize, Option<Planned>), PlanError<E>>,
+        coarser_s: impl Fn(&mut [Knot<A>]) -> f64,
     ) -> Result<(&'a [Knot<A>], Planned), PlanError<E>> {
         // A number of doublings that is likely enough, for where there is no room to be sure, with
         // its time; and the least time, as far as the finest plan shows it.
@@ -71,7 +65,10 @@ impl Accuracy {
             let judged = lay(doublings, knots).and_then(|(used, planned)| {
                 let (own, spare) = knots.split_at_mut(used.min(knots.len()));
                 let verdict = planned.map(|planned| {
-                    self.judge(limits, plans, [&mut *own, spare], planned.duration_s)
+                    if check_single_segments::<_, E>(pairs, limits, own).is_err() {
+                        return Ok(Verdict::Slow { least_s: 0.0 });
+                    }
+                    self.judge(limits, [own, spare], planned.duration_s, &coarser_s)
                 });
                 Ok((used, planned, verdict.transpose()?))
             });
@@ -92,6 +89,7 @@ impl Accuracy {
                         }
                     };
                 }
+                // Segments too long for a plan.
                 (Ok(_), _) => {}
                 // Twice as many knots stand elsewhere.
                 (Err(PlanError::TooCoarse { .. }), _) if doublings > 0 => {}
@@ -111,19 +109,16 @@ impl Accuracy {
     fn judge<A: Axes, E>(
         &self,
         limits: &Reciprocals<A>,
-        plans: &impl Plans<A>,
         [knots, spare]: [&mut [Knot<A>]; 2],
         duration_s: f64,
+        coarser_s: impl Fn(&mut [Knot<A>]) -> f64,
     ) -> Result<Verdict, PlanError<E>> {
-        if check_single_segments::<_, E>(knots, |knots| plans.rest_to_rest_s(knots)).is_err() {
-            return Ok(Verdict::Slow { least_s: 0.0 });
-        }
         let ratio = self.max_time_ratio;
         if !ratio.is_finite() {
             return Ok(Verdict::Fast);
         }
         let keeps = |lost_s: f64| duration_s <= (duration_s - lost_s) * ratio;
-        let Lost { last_s, most_s } = Lost::new(plans, knots, spare, duration_s)?;
+        let Lost { last_s, most_s } = Lost::new(knots, spare, duration_s, coarser_s)?;
         // Segments that are legs cannot be halved to see what they lose.
         let single_s = lost_on_single_segments(limits, knots);
         let [last_s, most_s] = [last_s, most_s].map(|lost_s| lost_s + single_s);
@@ -179,10 +174,10 @@ struct Lost {
 impl Lost {
     /// Plans fewer segments in the memory beside the knots.
     fn new<A: Axes, E>(
-        plans: &impl Plans<A>,
         knots: &[Knot<A>],
         spare: &mut [Knot<A>],
         duration_s: f64,
+        coarser_s: impl Fn(&mut [Knot<A>]) -> f64,
     ) -> Result<Self, PlanError<E>> {
         let (mut halving, mut used) = (Halving::default(), 0_usize);
         for kept in knots.iter().filter_map(|knot| halving.keep(knot)) {
@@ -199,15 +194,15 @@ impl Lost {
         let [mut last_s, mut most_s] = [0.0_f64; 2];
         for halvings in 0..HALVINGS {
             let (own, _) = fewer.split_at_mut(used.min(fewer.len()));
-            let coarser_s = plans.coarser_s(own);
+            let time_s = coarser_s(own);
             if halvings == 0 {
-                last_s = (coarser_s - duration_s).max(0.0);
+                last_s = (time_s - duration_s).max(0.0);
             }
-            most_s = most_s.max((coarser_s - finer_s).abs() * part);
+            most_s = most_s.max((time_s - finer_s).abs() * part);
             if most_s == f64::INFINITY {
                 break;
             }
-            (finer_s, part) = (coarser_s, part * LEFT);
+            (finer_s, part) = (time_s, part * LEFT);
             used = halve(own);
         }
         Ok(Self { last_s, most_s })

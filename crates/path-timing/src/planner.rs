@@ -7,6 +7,7 @@ use crate::number::sqrt;
 use crate::passes::{self, segment_s};
 use crate::place::{MIN_BETWEEN_SLOW_ENDS, Place};
 use crate::reciprocals::Reciprocals;
+use crate::stepping::Pairs;
 use crate::{Axes, Knot, Path, PathPoint, PlanError, jerk};
 
 /// What a leg goes on to at an end: how, and for what length.
@@ -165,8 +166,9 @@ pub(crate) fn duration<A: Axes, E>(knots: &[Knot<A>]) -> Result<f64, PlanError<E
 /// Refuses a plan that legs of one segment make slow, with the worst of them: on one segment the
 /// speed cannot rise and fall again, and between two slow corners it is slow all the way.
 pub(crate) fn check_single_segments<A: Axes, E>(
+    pairs: &impl Pairs<A>,
+    limits: &Reciprocals<A>,
     knots: &[Knot<A>],
-    rest_to_rest_s: impl Fn([&Knot<A>; 2]) -> f64,
 ) -> Result<(), PlanError<E>> {
     let (mut time_s, mut lost_s, mut leg) = (0.0, 0.0, 0_usize);
     let (mut most_s, mut worst) = (0.0, 0);
@@ -176,7 +178,7 @@ pub(crate) fn check_single_segments<A: Axes, E>(
         let segment_s = segment_s(from, to);
         time_s += segment_s;
         if is_leg(from, to) {
-            let own_s = segment_s - rest_to_rest_s([from, to]);
+            let own_s = segment_s - pairs.rest_to_rest_s(limits, [from, to], &to.tool);
             lost_s += own_s.max(0.0);
             if own_s > most_s {
                 (most_s, worst) = (own_s, leg);

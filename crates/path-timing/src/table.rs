@@ -3,14 +3,15 @@
 use core::cell::Cell;
 use core::convert::Infallible;
 
-use crate::accuracy::{Planned, Plans};
+use crate::accuracy::Planned;
 use crate::departure::{Speeds, Within};
 use crate::number::SMALLEST;
-use crate::passes::{fastest, rest_to_rest_s};
+use crate::passes::fastest;
 use crate::place::Place;
 use crate::planner::{check_single_segments, duration, lay_all, time};
 use crate::reciprocals::Reciprocals;
 use crate::rows::Rows;
+use crate::stepping::OfAxes;
 use crate::stretch::stretch_between;
 use crate::{Accuracy, Axes, AxisLimits, Knot, Path, PlanError, Span};
 
@@ -59,7 +60,7 @@ impl<'a, A: Axes> Table<'a, A> {
         };
         let knots = lay_all(paths.into_iter(), &limits, knots, lay)?;
         let duration_s = time(&limits, knots)?;
-        check_single_segments(knots, |ends| PlansOfAxes(&limits).rest_to_rest_s(ends))?;
+        check_single_segments(&OfAxes, &limits, knots)?;
         Ok(Self::new(knots, limits, duration_s))
     }
 
@@ -93,7 +94,7 @@ impl<'a, A: Axes> Table<'a, A> {
         let knots = lay_all(paths.into_iter(), &exact, knots, lay)?;
         fastest(&limits, knots);
         let duration_s = duration(knots)?;
-        check_single_segments(knots, |ends| PlansOfAxes(&exact).rest_to_rest_s(ends))?;
+        check_single_segments(&OfAxes, &exact, knots)?;
         Ok(Self::new(knots, exact, duration_s))
     }
 
@@ -170,7 +171,11 @@ impl<'a, A: Axes> Table<'a, A> {
             };
             Ok((own.len(), Some(planned)))
         };
-        let (knots, planned) = accuracy.plan(&limits, &PlansOfAxes(&limits), knots, lay)?;
+        let coarser_s = |knots: &mut [Knot<A>]| {
+            stretch_all(&limits, knots);
+            time::<_, Infallible>(&limits, knots).unwrap_or(f64::INFINITY)
+        };
+        let (knots, planned) = accuracy.plan(&limits, &OfAxes, knots, lay, coarser_s)?;
         Ok(Self::new(knots, limits, planned.duration_s))
     }
 
@@ -236,20 +241,6 @@ impl<'a, A: Axes> Table<'a, A> {
             Some((to.ds > 0.0).then_some(Span { s, rows }))
         })
         .flatten()
-    }
-}
-
-/// Planned within the limits of the axes.
-struct PlansOfAxes<'a, A: Axes>(&'a Reciprocals<A>);
-
-impl<A: Axes> Plans<A> for PlansOfAxes<'_, A> {
-    fn coarser_s(&self, knots: &mut [Knot<A>]) -> f64 {
-        stretch_all(self.0, knots);
-        time::<_, Infallible>(self.0, knots).unwrap_or(f64::INFINITY)
-    }
-
-    fn rest_to_rest_s(&self, [from, to]: [&Knot<A>; 2]) -> f64 {
-        rest_to_rest_s(self.0, [from, to], &to.tool)
     }
 }
 

@@ -179,15 +179,19 @@ impl TorqueCurve {
         if is_within { value } else { 0.0 }
     }
 
+    /// The points that there are.
+    fn known(&self) -> &[[f64; 2]] {
+        self.points.get(..self.count).unwrap_or_default()
+    }
+
     /// The speed of the last point.
     pub(super) fn max_speed(&self) -> f64 {
-        let points = self.points.get(..self.count).unwrap_or_default();
-        points.last().map_or(0.0, |[speed, _]| *speed)
+        self.known().last().map_or(0.0, |[speed, _]| *speed)
     }
 
     /// The straight pieces, until the function is through: speeds and torques at both ends.
     pub(super) fn each_piece(&self, mut is_last: impl FnMut([f64; 2], [f64; 2]) -> bool) {
-        let points = self.points.get(..self.count).unwrap_or_default();
+        let points = self.known();
         let ends = points.iter().skip(1).chain(points.last());
         for ([v0, t0], [v1, t1]) in points.iter().zip(ends) {
             if is_last([*v0, *v1], [*t0, *t1]) {

@@ -5,7 +5,7 @@ use core::convert::Infallible;
 
 use super::laden::Laden;
 use super::{Dynamics, Lack, MORE, TorqueLimits, passes, slowed};
-use crate::accuracy::{Planned, Plans};
+use crate::accuracy::Planned;
 use crate::departure::{Speeds, Within};
 use crate::knots::span;
 use crate::number::larger_or_nan;
@@ -13,7 +13,6 @@ use crate::passes::segment_s;
 use crate::place::Place;
 use crate::planner::{check_single_segments, lay_all};
 use crate::reciprocals::Reciprocals;
-use crate::stepping::Pairs;
 use crate::{Accuracy, Axes, AxisLimits, Knot, Path, PlanError, Rows, Span, Table};
 
 /// A position-velocity-time table with which no motor gives more torque than it has.
@@ -86,9 +85,7 @@ impl<D: Dynamics> TorqueLimits<D> {
         let Some(planned) = self.time(&limits, knots)? else {
             return Err(self.too_coarse(&Table::new(knots, limits, 0.0)));
         };
-        check_single_segments(knots, |ends| {
-            PlansOfMotors(self, &limits).rest_to_rest_s(ends)
-        })?;
+        check_single_segments(&Laden(self), &limits, knots)?;
         Ok(TorqueTable::new(knots, limits, planned))
     }
 
@@ -122,7 +119,12 @@ impl<D: Dynamics> TorqueLimits<D> {
             let own = lay_all(paths.clone().into_iter(), &limits, knots, lay)?;
             Ok((own.len(), self.time(&limits, own)?))
         };
-        let (knots, planned) = accuracy.plan(&limits, &PlansOfMotors(self, &limits), knots, lay)?;
+        let coarser_s = |knots: &mut [Knot<D::Axes>]| match self.time::<Infallible>(&limits, knots)
+        {
+            Ok(Some(planned)) => planned.duration_s,
+            _ => f64::INFINITY,
+        };
+        let (knots, planned) = accuracy.plan(&limits, &Laden(self), knots, lay, coarser_s)?;
         Ok(TorqueTable::new(knots, limits, planned))
     }
 
@@ -214,23 +216,6 @@ impl<D: Dynamics> TorqueLimits<D> {
             from = to;
         }
         most
-    }
-}
-
-/// Planned within the torques of motors.
-struct PlansOfMotors<'a, D: Dynamics>(&'a TorqueLimits<D>, &'a Reciprocals<D::Axes>);
-
-impl<D: Dynamics> Plans<D::Axes> for PlansOfMotors<'_, D> {
-    fn coarser_s(&self, knots: &mut [Knot<D::Axes>]) -> f64 {
-        let planned = self.0.time::<Infallible>(self.1, knots);
-        planned
-            .ok()
-            .flatten()
-            .map_or(f64::INFINITY, |planned| planned.duration_s)
-    }
-
-    fn rest_to_rest_s(&self, [from, to]: [&Knot<D::Axes>; 2]) -> f64 {
-        Laden(self.0).rest_to_rest_s(self.1, [from, to], &to.tool)
     }
 }
 
