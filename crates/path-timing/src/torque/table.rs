@@ -210,7 +210,8 @@ impl<D: Dynamics> TorqueLimits<D> {
                 let speeds = [from.speed, to.speed];
                 let span = span([from, to], speeds, segment_s(from, to));
                 let asked = self.utilisation(&span);
-                to.set_share(to.share() / (1.0 + (asked - 1.0).max(0.0) * MORE));
+                let less = 1.0 + (asked - 1.0).max(0.0) * MORE;
+                to.set_share(to.share() / less.min(MOST_AT_ONCE));
                 most = larger_or_nan(most, asked);
             }
             from = to;
@@ -225,6 +226,10 @@ fn leave_all<A: Axes>(knots: &mut [Knot<A>]) {
         knot.set_share(1.0);
     }
 }
+
+/// What a segment's share of the torques is divided by at most in a round: a cubic that asks for
+/// much between its ends, or for more than can be bounded, may ask for little a little slower.
+const MOST_AT_ONCE: f64 = 1.2;
 
 /// Rounds in which segments are left less of the torques.
 const ROUNDS_OF_SHARES: u32 = 8;
