@@ -197,8 +197,9 @@ impl<D: Dynamics> TorqueLimits<D> {
         PlanError::TooCoarse { leg, s }
     }
 
-    /// Leaves each segment the share of the torques with which it would have asked for no more than
-    /// there is. What was asked at most, as a part of what there is.
+    /// Leaves each segment that asks for more than there is a smaller share of the torques: that with
+    /// which it would not have, as far as one round goes. What was asked at most, as a part of what
+    /// there is.
     fn lower_shares(&self, knots: &mut [Knot<D::Axes>]) -> f64 {
         let mut most = 0.0;
         let mut rest = knots.iter_mut();

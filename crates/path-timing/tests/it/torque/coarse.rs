@@ -2,14 +2,15 @@
 
 use delta_kin::{DeltaMasses, DeltaPath};
 use path_timing::{
-    Accuracy, Corner, Curve, Dynamics, Friction, Knot, PlanError, Row, Smoothed, Span, ToolLimits,
-    TorqueCurve, TorqueLimits, Vertex,
+    Accuracy, Corner, Curve, Dynamics, Friction, Knot, PlanError, Row, Span, ToolLimits,
+    TorqueCurve, TorqueLimits,
 };
 use scara_kin::{ArmPath, Elbow};
 use test_support::{Random, setting};
 
 use super::streams::{end_s, streamed};
 use super::{FREE, WITHIN, arm, constant, delta, limits, stepper};
+use crate::support::polyline::{smoothed, within};
 
 /// What is known of a segment from rest to rest was not known at each pair of speeds: tables were
 /// refused, and streams rested at its knots.
@@ -73,17 +74,16 @@ fn few_segments_of_a_smooth_path_are_not_slow() {
         })
     });
     for places in turns.into_iter().chain(random) {
-        let mut vertices = [Vertex::default(); 16];
-        let smoothed = Smoothed::new(places, 0.05, &mut vertices).unwrap();
-        let curves: Vec<_> = smoothed.map(Result::unwrap).collect();
+        let curves = smoothed(&places, 0.05);
         let paths = curves.iter().map(|curve| delta.path(*curve).unwrap());
-        let accuracy = Accuracy {
-            min_segments: 1,
-            max_departure: 0.04,
-            max_time_ratio: f64::INFINITY,
-        };
         let departure = |path: &DeltaPath, span: &Span<_>| path.departure(span);
-        let coarse = limits.plan_within(paths.clone(), [FREE; 3], accuracy, departure, &mut knots);
+        let coarse = limits.plan_within(
+            paths.clone(),
+            [FREE; 3],
+            within(1, 0.04),
+            departure,
+            &mut knots,
+        );
         let coarse_s = coarse.unwrap().duration_s();
         let fine = limits.plan(paths, [FREE; 3], |_| 200, &mut knots);
         let ratio = coarse_s / fine.unwrap().duration_s();
