@@ -313,7 +313,7 @@ impl<const K: usize> Number for Model<K> {
 
 #[cfg(test)]
 mod tests {
-    use astro_float::{BigFloat, Consts, RoundingMode};
+    use astro_float_num::{BigFloat, Consts, RoundingMode};
     use proptest::prelude::*;
 
     use super::Model;

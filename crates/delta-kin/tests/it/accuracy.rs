@@ -1,7 +1,7 @@
 //! What is claimed of rounding, as a search for the worst case. `DELTA_KIN_CASES` says how many
 //! machines are tried, 2000 unless set; `--nocapture` shows what was found.
 
-use astro_float::{BigFloat, Consts, RoundingMode};
+use astro_float_num::{BigFloat, Consts, RoundingMode};
 use delta_kin::nalgebra::{self, Point3, RealField, Vector3};
 use delta_kin::{ArmGeometry, AssemblyMode, Delta, Dimensions, ElbowSide, ForwardError, Trig};
 use proptest::prelude::*;

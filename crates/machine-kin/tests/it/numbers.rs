@@ -3,7 +3,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use astro_float::{BigFloat, Consts, RoundingMode};
+use astro_float_num::{BigFloat, Consts, RoundingMode};
 use machine_kin::{Gradient, Interval, Jet, Number, Refusal};
 use proptest::prelude::*;
 
