@@ -70,7 +70,7 @@ pub fn segments_within<P: Path>(
         let mut bound = Bound::new(allowed);
         let mut from = Knot::start(start);
         while !from.ends_leg && !bound.is_far() {
-            let to = match cutting.next_knot(|_, _, _| 1.0, |_, _| true) {
+            let to = match cutting.next_knot(|_, _, _| 1.0, |_, _, _| true) {
                 Err(PlanError::TooCoarse { .. }) => return Ok(f64::INFINITY),
                 to => to?,
             };

@@ -148,16 +148,16 @@ impl<P: Path> Cutting<P> {
     }
 
     /// The next knot, the length of its segment stretched by a factor; `is_known` tells whether the
-    /// path from one knot to the next is.
+    /// path from one knot to the next is, on a segment that has been halved as often.
     pub(crate) fn next_knot(
         &mut self,
         stretch: impl Fn(&PathPoint<P::Axes>, &PathPoint<P::Axes>, f64) -> f64,
-        is_known: impl Fn(&Knot<P::Axes>, &Knot<P::Axes>) -> bool,
+        is_known: impl Fn(&Knot<P::Axes>, &Knot<P::Axes>, u32) -> bool,
     ) -> Result<Knot<P::Axes>, PlanError<P::Error>> {
         loop {
             let from = self.laying.last;
             let refused = match self.laying.knot(self.next_s(), &stretch) {
-                Ok(to) if is_known(&from, &to) => {
+                Ok(to) if is_known(&from, &to, self.halvings) => {
                     self.advance();
                     return Ok(to);
                 }

@@ -76,7 +76,8 @@ impl<'w, P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P
     /// From rest to rest they are at least 2, and on a long path between short ones, whose corners
     /// may be slow: on one segment the speed does not rise and fall again. One is halved, up to
     /// twelve times, where the slopes at its ends do not tell how the path goes between them, and
-    /// where the path takes it for too coarse.
+    /// where the path takes it for too coarse; up to four times, without a limit of jerk, where it
+    /// bends so much that it would take longer.
     ///
     /// # Errors
     /// [`PlanError::Limit`]; [`PlanError::Memory`] for a window of fewer than 4 knots.

@@ -8,7 +8,25 @@ use crate::look_ahead::Window;
 use crate::planner::{Beyond, check_gap, fewest, junction_to};
 use crate::reciprocals::Reciprocals;
 use crate::stretch::stretch_evenly;
-use crate::{Corner, Knot, Path, PlanError};
+use crate::{Axes, Corner, Knot, Path, PlanError};
+
+/// The part of the steepest slope by which slopes may disagree on a segment before it is halved for
+/// time's sake. The knots of a stream do not gather where the machine is slow: of 834 bent curves in
+/// 6 segments the slowest took 1.42 times as long as in 400, and takes 1.16.
+const COMFORTABLE_GAP: f64 = 0.05;
+
+/// How often at most: next to a cusp it would be for ever.
+const FEW_HALVINGS: u32 = 4;
+
+/// By how much slopes may disagree. With a limit of jerk shorter segments take no less time at
+/// corners, and a window of five knots sees none of what follows.
+fn gap<A: Axes>(limits: &Reciprocals<A>, halvings: u32) -> f64 {
+    if halvings < FEW_HALVINGS && !limits.has_jerk() {
+        COMFORTABLE_GAP
+    } else {
+        LARGEST_GAP
+    }
+}
 
 /// Paths of which the first have entered a window.
 pub(crate) struct Feeder<P: Path, I, F> {
@@ -95,7 +113,9 @@ impl<P: Path, I: Iterator<Item = P>, F: FnMut(&P) -> Result<u32, PlanError<P::Er
                         1.0
                     }
                 },
-                |from, to| is_resolved(limits, from, to, LARGEST_GAP) && is_known(from, to),
+                |from, to, halvings| {
+                    is_resolved(limits, from, to, gap(limits, halvings)) && is_known(from, to)
+                },
             )?;
             window.push(to);
             if to.ends_leg {
