@@ -53,7 +53,7 @@ fn a_long_window_is_a_table() {
     }
 }
 
-/// Six segments of a bent curve, over 400 in a table: of 834 curves the worst took 1.16 times that.
+/// Six segments of a bent curve, over 400 in a table: the worst takes 1.16 times as long.
 const OVER_MANY_SEGMENTS: f64 = 1.2;
 
 #[test]
@@ -61,20 +61,19 @@ fn few_segments_of_a_bent_curve_are_nearly_as_fast_as_many() {
     let axes = [limits(300.0, 3000.0, None); 2];
     let (mut knots, mut window) = (slots(401), slots(300));
     let mut random = Random::new(1);
+    let (mut count, mut worst) = (0, 0.0_f64);
     for _ in 0..400 {
         let points = array::from_fn(|_| array::from_fn(|_| random.within(0.0, 20.0)));
         let Ok(curve) = Curve::<2>::bezier(points) else {
             continue; // with a cusp
         };
         let table = Table::plan([curve], axes, |_| 400, &mut knots).unwrap();
-        let least_s = table.duration_s();
         let motion = LookAhead::new([curve], axes, |_| Ok(6), &mut window).unwrap();
-        let time_s = motion.last().unwrap().unwrap().time_s;
-        assert!(
-            time_s < least_s * OVER_MANY_SEGMENTS,
-            "{points:?}: {time_s} {least_s}"
-        );
+        let ratio = motion.last().unwrap().unwrap().time_s / table.duration_s();
+        assert!(ratio < OVER_MANY_SEGMENTS, "{points:?}: {ratio}");
+        (count, worst) = (count + 1, worst.max(ratio));
     }
+    println!("{count} curves, at worst {worst:.3} times as long");
 }
 
 #[test]
